@@ -1,4 +1,4 @@
-"""Writes the tables of docs/catalogue.md: what the assist and the valet meet. ``python docs/catalogue.py``."""
+"""Writes docs/tables/catalogue.md: which clauses the parking systems meet. ``python docs/catalogue.py``."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,4 +22,4 @@ def tables(words: list[str]) -> list[str]:
 
 
 if __name__ == "__main__":
-    put(Path(__file__).parent / "catalogue.md", "catalogue", tables(["catalogue"]))
+    put(Path(__file__).parent / "tables" / "catalogue.md", "catalogue", tables(["catalogue"]))

@@ -1,4 +1,4 @@
-"""Writes the tables of docs/embedded.md: ``python docs/embedded.py``, or some: ``... memory stack size time misra``.
+"""Writes docs/tables/embedded.md: ``python docs/embedded.py``, or some tables: ``... memory stack size time misra``.
 
 Stack needs gcc 10 or later, MISRA needs cppcheck with its addon; without them these tables stay as they are.
 """
@@ -27,7 +27,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 
 FOLDER = Path(__file__).parent
-PAGE = FOLDER / "embedded.md"
+PAGE = FOLDER / "tables" / "embedded.md"
 ROUNDS = 15
 TARGETS = {
     "Cortex-M7, double FPU (thumbv7em)": ("thumb-freestanding-eabihf", "-mcpu=cortex_m7+fp_armv8d16"),

@@ -1,4 +1,4 @@
-"""Which equation of which paper stands in which file, read from the docstrings that say so."""
+"""Which equation of which paper stands in which file, read from their docstrings."""
 
 import ast
 import re

@@ -30,9 +30,13 @@ from modelkit.states import parts_of  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
+from orchestrator.grid.parking_world.factors import FACTORS as PARKING_WORLD  # noqa: E402
+from orchestrator.grid.world.factors import FACTORS as APA_WORLD  # noqa: E402
 from orchestrator.live.page import NAME as LIVE  # noqa: E402
 from orchestrator.live.page import write_live  # noqa: E402
 from orchestrator.live.situation import shipped  # noqa: E402
+from orchestrator.papers.figure_files import gallery_text  # noqa: E402
+from orchestrator.papers.paper_figures import FIGURES  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
@@ -41,6 +45,7 @@ from orchestrator.scenario.load_scenario import load_scenario, scenario_names  #
 from orchestrator.scenario.models import APART, MODELS, apart_models  # noqa: E402
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
+from orchestrator.sweep.study.space import Factor  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
 from orchestrator.verdict.limit_text import required_text  # noqa: E402
@@ -76,14 +81,24 @@ def pages() -> dict[str, str]:
         "files.md": files_page(),
         "equations.md": equations_page(),
         "benchmarks.md": benchmarks_page(),
+        "figures.md": figures_page(),
     }
 
 
 def equations_page() -> str:
-    """Return which equation of which paper is written where, as the docstrings say it."""
+    """Return which equation of which paper stands where, read from the docstrings."""
     rows = [[f"{item.paper} ({item.number})", item.where, item.text] for item in equations(ROOT)]
     head = "# Equations\n\nWhich equation of which paper stands where. What was misprinted is on the papers' pages.\n\n"
     return head + table(["equation", "file", "what stands there"], rows)
+
+
+def figures_page() -> str:
+    """Return every figure of the papers with its counterpart, or the reason that there is none."""
+    parts = ["# Figures of the papers\n", "Written by `apa reproduce PAPER --figures FOLDER`.\n"]
+    for paper in dict.fromkeys(item.paper for item in FIGURES):
+        figures = [item for item in FIGURES if item.paper == paper]
+        parts.append(f"## {paper}\n\n{gallery_text(figures, '../images/papers/')}")
+    return "\n".join(parts)
 
 
 def benchmarks_page() -> str:
@@ -215,7 +230,7 @@ def subcommands(top: CommandParser, prefix: str = "") -> Iterator[tuple[str, Com
 
 
 def scenarios_page() -> str:
-    """Return the shipped scenarios, cars and sets of limits."""
+    """Return the shipped scenarios, cars, sets of limits, and the factors of the studies that disturb everything."""
     shipped = [load_scenario(name) for name in scenario_names()]
     rows = [[f"`{item.name}`", item.title, item.expect.replace("_", " "), item.source] for item in shipped]
     parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "what happens", "expected", "source"], rows)]
@@ -224,7 +239,20 @@ def scenarios_page() -> str:
     for path in sorted((ROOM / "limits").glob("*.yaml")):
         rows = [[item.id, f"`{item.signal}`", required_text(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
+    for name, factors in {"apa-world": APA_WORLD, "parking-world": PARKING_WORLD}.items():
+        rows = [factor_row(factor) for factor in factors]
+        parts.append(f"## Factors of the study {name}\n\n{table(['factor', 'range', 'nominal', 'meaning'], rows)}")
     return "\n".join(parts)
+
+
+def factor_row(factor: Factor) -> list[str]:
+    """Return name, range or choices, nominal value and meaning of a factor."""
+    if factor.choices:
+        counts = {word: factor.choices.count(word) for word in factor.choices}
+        words = (word if count == 1 else f"{count} x {word}" for word, count in counts.items())
+        return [f"`{factor.name}`", ", ".join(words), factor.choices[int(factor.nominal)], factor.text]
+    unit = "" if factor.unit == "1" else f" {factor.unit}"
+    return [f"`{factor.name}`", f"{factor.low:g} to {factor.high:g}{unit}", f"{factor.nominal:g}", factor.text]
 
 
 def files_page() -> str:

@@ -1,16 +1,22 @@
-"""Hook of mkdocs: every page of docs/ that mkdocs.yml does not name goes under "Models and laws"."""
+"""Hook of mkdocs: every page that mkdocs.yml does not name goes under "Controllers", the READMEs too."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
-SECTION = "Models and laws"
+sys.path[:0] = [str(Path(__file__).parent)]
+
+from readmes import readmes  # noqa: E402
+
+SECTION = "Controllers"
 
 
 def on_config(config: Any) -> Any:
-    """Return the configuration with the pages that were not named, in alphabetical order."""
+    """Return the configuration with the pages that are not named, in alphabetical order."""
     docs = Path(config["docs_dir"])
     named = set(_pages(config["nav"]))
-    more = sorted(path.name for path in docs.glob("*.md") if path.name not in named)
+    pages = {*(path.name for path in docs.glob("*.md")), *readmes()}
+    more = sorted(name for name in pages if name not in named)
     for entry in config["nav"]:
         if SECTION in entry:
             entry[SECTION] = [*entry[SECTION], *more]

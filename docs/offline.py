@@ -10,14 +10,16 @@ from typing import Any
 ELSEWHERE = re.compile(r'<script src="https://[^"]*iframe-worker[^"]*"></script>')
 
 
-REFERENCE = {"boost": 8}
-"""Who looks for a name wants what it means before all places where it is used."""
+BOOSTS = {"reference/vehicle.md": 2, "reference/controller.md": 2, "reference/": 0.3, "tables/": 0.3, "adr/": 0.3}
+"""Start of a page's path -> its weight in the search: parameters before their uses, explanations before lists."""
 
 
 def on_page_markdown(markdown: str, page: Any = None, **_: Any) -> str:
-    """Return the page as it is; pages of the reference come first in the search."""
-    if page is not None and page.file.src_uri.startswith("reference/"):
-        page.meta.setdefault("search", REFERENCE)
+    """Return the page as it is, with its weight in the search."""
+    path = page.file.src_uri if page is not None else ""
+    boost = next((weight for start, weight in BOOSTS.items() if path.startswith(start)), None)
+    if boost is not None:
+        page.meta.setdefault("search", {"boost": boost})
     return markdown
 
 

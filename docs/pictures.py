@@ -11,10 +11,6 @@ from typing import Any
 
 from playwright.sync_api import sync_playwright
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "live"))
-
-from person import drive, hurries_once, never_obeys, obeys
-
 from orchestrator.cli import main as apa
 
 IMAGES = Path(__file__).parent / "images"
@@ -39,28 +35,21 @@ def main() -> None:
         program = shutil.which("chromium") or shutil.which("google-chrome") or sys.exit("no Chromium found")
         browser = play.chromium.launch(executable_path=program, args=FLAGS)
         wide = {"viewport": {"width": 1440, "height": 900}}
-        phone = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "is_mobile": True}
         photograph(browser, runs["report"], "report", "#t=14.5", wide)
         photograph(browser, runs["report"], "report-dark", "#t=14.5", {**wide, "color_scheme": "dark"})
-        photograph(browser, runs["report"], "report-phone", "#t=12", {**phone, "color_scheme": "dark"})
         photograph(browser, runs["apa"], "report-apa", "#t=22", wide)
         photograph(browser, runs["compare"], "compare", "#t=9", wide)
         photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}})
-        drive_pictures(browser, runs["live"], wide, phone)
+        live_pictures(browser, runs["live"], wide)
         browser.close()
 
 
-def drive_pictures(browser: Any, path: Path, wide: dict[str, Any], phone: dict[str, Any]) -> None:
-    """Write the pictures of the page that is driven: at rest, its map, its chart, and three people at the pedals."""
+def live_pictures(browser: Any, path: Path, wide: dict[str, Any]) -> None:
+    """Write the pictures of the live page: with a changed parameter, and its chart."""
 
     def slower(page: Any) -> None:
         page.fill('[id="p-vehicle.driver.profile[1].speed"]', "1.1")
         page.keyboard.press("Tab")
-
-    def mapped(page: Any) -> None:
-        page.click("#map-tab")
-        page.click("#map-go")
-        page.wait_for_selector("#map[data-done]")
 
     def charted(page: Any) -> None:
         page.click("#chart-tab")
@@ -69,15 +58,11 @@ def drive_pictures(browser: Any, path: Path, wide: dict[str, Any], phone: dict[s
         )
 
     photograph_live(browser, path, "live", wide, slower)
-    photograph_live(browser, path, "live-map", {**wide, "color_scheme": "dark"}, mapped)
     photograph_live(browser, path, "live-chart", wide, charted)
-    photograph_live(browser, path, "live-phone", phone, lambda page: page.click("#play"))
-    for name, will in (("obeys", obeys), ("once", hurries_once), ("never", never_obeys)):
-        photograph_live(browser, path, f"live-{name}", wide, lambda page, will=will: drive(page, will))
 
 
 def photograph_live(browser: Any, path: Path, name: str, options: dict[str, Any], act: Any) -> None:
-    """Write docs/images/``name``.png of the page that is driven after ``act``."""
+    """Write docs/images/``name``.png of the live page after ``act``."""
     context = browser.new_context(**options)
     page = context.new_page()
     page.goto(path.as_uri() + "#s=guo2015-case4-105")

@@ -59,4 +59,4 @@ if __name__ == "__main__":
     here = Path(__file__).parent
     put(here / "use-in-your-tool.md", "ports", ports())
     with tempfile.TemporaryDirectory() as scratch:
-        put(here / "native-fmu.md", "sizes", sizes(Path(scratch)))
+        put(here / "targets.md", "sizes", sizes(Path(scratch)))

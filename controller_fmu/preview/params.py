@@ -64,7 +64,7 @@ ROAD = (
 ) + (RoadPiece(),) * 3
 """Fig. 7 is lost. Printed: the curvatures, and points C and E, which put curve 2 from s = 357.1 to 514.2 m, a half
 circle. 100 m straights and a quarter circle as curve 1 put it there to the decimetre. Chosen: half circles for curves 3
-and 4, 102 m before each (which decides where in its period the alternation meets the curve, see docs/preview.md)."""
+and 4, 102 m before each (which decides where in its period the alternation meets the curve, see README.md)."""
 
 
 class PreviewParams(NamedTuple):

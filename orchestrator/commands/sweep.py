@@ -33,7 +33,7 @@ EXAMPLES = """examples:
   apa sweep guo2015-speed-rate --explain       what compiled code of the study omits
   apa replay runs/my-study/my-study.parquet --row 17
 
-A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/sweeps.md.
+A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/studies.md.
 Shipped ones are in `apa list`; some print tables of their own.
 """
 MAX_OUTCOMES = 10

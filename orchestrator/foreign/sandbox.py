@@ -45,7 +45,7 @@ def sandbox_program() -> str:
     if program is None:
         raise BadInput(
             f"needs bubblewrap ({PROGRAM}), which is not installed here; run apa in a container or as another user "
-            "instead (docs/foreign-fmus.md)",
+            "instead (docs/third-party-fmus.md)",
             key="--sandbox",
         )
     test = [program, "--unshare-all", "--ro-bind", "/", "/", "--proc", "/proc", "--dev", "/dev", "true"]

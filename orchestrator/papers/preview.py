@@ -66,7 +66,7 @@ RISEN, RIPPLE = 0.1, 0.08
 """Share of a steering change at which it has risen, and the ripple printed for sharp curves."""
 NOTES = [
     "Equations (1), (2), (3), the membership functions and most of the road are not in the text: standard forms, "
-    "triangles and straights of 100 and 102 m are chosen; docs/preview.md says which and why.",
+    "triangles and straights of 100 and 102 m are chosen; controller_fmu/preview/README.md says which and why.",
     "epsL by equation (2) is kappa L1 + beta in a steady curve; the printed angles are about half of that, as the "
     "chord to the preview point would give (kappa L1 / 2). Both are shown; nothing is bent to meet the print.",
     "The safe speed of curve 4 by the formula that meets the other three is 3.4 m/s; 3.2 m/s is printed.",

@@ -131,7 +131,7 @@ def parameters_of(path: Path, slave: str) -> list[Variable]:
 
 def connect_advice(place: str, fmu: str, scenario: str = "") -> str:
     """Return how to connect an FMU whose names are not ours: what to write into, or the command that writes it."""
-    page = "page foreign-fmus of the documentation"
+    page = "page third-party-fmus of the documentation"
     if scenario.endswith((".yaml", ".yml")):
         return f"write what is missing into system: connections and roles of {scenario} ({page})"
     option = f"--{place}" if place in MODELS else "--fmu"

@@ -15,7 +15,7 @@ from orchestrator.scenario.models import MODELS
 from tests.compiler.c_model import COMPILER, ZIG, compiled
 from tests.compiler.language import load, model_of, whole_module
 
-DOCS = Path(__file__).parents[2] / "docs" / "c-code.md"
+DOCS = Path(__file__).parents[2] / "docs" / "model-language.md"
 WALLS = '''\
 """Where the nearest wall is."""
 

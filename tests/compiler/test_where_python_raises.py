@@ -1,4 +1,4 @@
-"""Where Python raises, C goes on with the value that docs/c-code.md states, and reads no memory outside."""
+"""Where Python raises, C goes on with the value that docs/model-language.md states, and reads no memory outside."""
 
 import math
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 from tests.compiler.language import Inputs, Twins
 
-PAGE = Path(__file__).parents[2] / "docs" / "c-code.md"
+PAGE = Path(__file__).parents[2] / "docs" / "model-language.md"
 SIGNATURE = "x: float, y: float, n: int, m: int, p: bool, q: bool"
 LARGEST, SMALLEST = 2**63 - 1, -(2**63)
 NAN, INF = math.nan, math.inf

@@ -20,7 +20,7 @@ DEGREE = math.pi / 180.0
 
 
 def test_rules_of_the_twelve_states_as_the_paper_words_them() -> None:
-    """States 1, 5, 9: turn round; 2, 6, 10: slow; 3, 7, 11: faster; 4, 8, 12: slower. Steering: docs/hsic.md."""
+    """States 1, 5, 9: turn round; 2, 6, 10: slow; 3, 7, 11: faster; 4, 8, 12: slower. Steering: its README.md."""
     speeds = [SpeedMode(row[0]).name for row in RULES]
     steering = [SteerMode(row[1]).name for row in RULES]
     assert speeds == ["STAND", *("TURN_ROUND", "SLOW", "FAST", "APPROACH") * 3]

@@ -19,12 +19,12 @@ from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import fmu_files
 
 ROOT = Path(__file__).parents[2]
-MADE_HERE = ROOT / "docs" / "extend.md"
-"""Its commands are of what it adds; ``test_extend`` runs them."""
-PAGES = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - {MADE_HERE}, key=lambda path: path.name)
+RECIPES = {ROOT / "docs" / "extend.md", ROOT / "docs" / "extend-tools.md"}
+"""Their commands are of what they add; ``test_extend`` runs them."""
+PAGES = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - RECIPES, key=lambda path: path.name)
 INSTEAD = {"make run": "apa run guo2015-case4"}
 """What a command does after it has installed everything."""
-FEWER = {'"guo2015-*"': '"guo2015-case[34]"', '"fault-*"': "fault-no-path", "catalogue/iso20900": "catalogue/cicap-b2"}
+FEWER = {'"guo2015-*"': '"guo2015-case[34]"', "catalogue/iso20900": "catalogue/cicap-b2"}
 """Tests of a suite -> some of them, which are enough to see that the command does what it says."""
 NOT_RUN = {
     "make test": "it is what runs this",
@@ -36,14 +36,9 @@ NOT_RUN = {
     "apa build --fmus native --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmus native --cc gcc": "would replace the FMUs that all runs here use",
-    "apa run guo2015-case4 --realtime --live": "twenty seconds and a port; tests/stream",
     "apa hunt": "minutes; tests/hunt has small ones",
-    "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
-    "OMSimulator ": "does not install from the package index",
-    "apa sweep my-study.yaml --dask tls": "needs a scheduler with certificates",
     "apa export container guo2015-case4 --set": "compiles for half a minute what the line above it does",
     "apa build --system": "compiles; tests/fmi/test_system_fmus.py",
-    "apa import tpcap": "TPCAP's files are not part of this; tests/valet reads them where they are",
     "apa recover runs/guo2015-case4/run.mcap.part": "needs a killed run; tests/orchestrator/test_recover.py has some",
 }
 """How a command begins that is not run here -> why."""

@@ -27,9 +27,10 @@ from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
 from tests.docs.scripts import script
 
 ROOT = Path(__file__).parents[2]
-MADE_HERE = "extend.md"
-"""Its commands are of what it adds; ``test_extend`` runs them."""
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)
+RECIPES = ("extend.md", "extend-tools.md")
+"""Their commands are of what they add; ``test_extend`` runs them."""
+READMES = sorted((ROOT / "controller_fmu").glob("*/README.md"))
+PAGES = sorted([ROOT / "README.md", *READMES, *(ROOT / "docs").glob("*.md")], key=lambda path: str(path))
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +50,7 @@ def blocks(page: Path, language: str) -> list[str]:
 
 def commands() -> list[str]:
     """Return the commands in sentences of the documentation, and those in the help of every command."""
-    pages = [page for page in PAGES if page.name != MADE_HERE]
+    pages = [page for page in PAGES if page.name not in RECIPES]
     texts = [text for page in pages for text in re.findall(r"`(apa [^`]+)`", page.read_text(encoding="utf-8"))]
     modules = [f"orchestrator.commands.{name}" for name in COMMANDS] + [
         f"orchestrator.export.{name}" for name in FORMATS
@@ -111,7 +112,7 @@ def test_both_kinds_were_found() -> None:
     assert len(rules()) >= 2
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_lead_to_files(page: Any) -> None:
     """To files that are in the repository: the reference is made by ``make docs``, a link to it would be dead there."""
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
@@ -175,18 +176,18 @@ def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
     keys = {row[0]: row for row in generate.key_rows(Scenario)}
     assert {"`target`", "`scene`", "`task`", "`ending`"} <= keys.keys()
     assert not {"`file`", "`changed`", "`left_out`"} & keys.keys()
-    assert keys["`stop_time`"][2] == "`60.0`"
+    assert keys["`step`"][2] == "`0.01`"
 
 
 def test_charts_are_drawn_by_us(generate: Any) -> None:
     charts = script("charts")
-    for name in ("apa.md", "guo2015.md"):
-        text = (ROOT / "docs" / name).read_text(encoding="utf-8")
+    pages = [page for page in PAGES if "<!-- chart: " in page.read_text(encoding="utf-8")]
+    assert len(pages) >= 3
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
         drawn = charts.on_page_markdown(text)
-        marks = text.count("```mermaid") + text.count("<!-- chart: ")
-        assert marks >= 1
+        marks = text.count("<!-- chart: ")
         assert drawn.count('<svg class="chart"') == marks
-        assert "mermaid" not in drawn
         assert "<!-- chart" not in drawn
     site = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     assert "name: mermaid" not in site
@@ -196,9 +197,11 @@ def test_charts_are_drawn_by_us(generate: Any) -> None:
 def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     frames = script("frames")
     monkeypatch.setattr(frames, "REFERENCE", tmp_path)
-    for name in ("guo2015", "preview", "hsic", "zhang2022", "apa", "adaptive", "valet"):
-        text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
-        ((system, scenario, names),) = frames.MARK.findall(text)
+    marks = {
+        mark[0]: mark.groups() for page in PAGES for mark in frames.MARK.finditer(page.read_text(encoding="utf-8"))
+    }
+    assert len(marks) == len(READMES) + 2, "each system of a paper, apa and valet"
+    for text, (system, scenario, names) in marks.items():
         made = tmp_path / (f"live-{system}.html" if system else "live.html")
         models = load_scenario(scenario).models
         assert models == models_for({"system": system})
@@ -219,9 +222,9 @@ def test_search_finds_the_parts_of_a_name() -> None:
 
 def test_pages_not_named_in_the_site_get_a_place() -> None:
     nav = script("nav")
-    config = {"docs_dir": str(ROOT / "docs"), "nav": [{"Start": "index.md"}, {nav.SECTION: ["architecture.md"]}]}
+    config = {"docs_dir": str(ROOT / "docs"), "nav": [{"Start": "index.md"}, {nav.SECTION: ["results.md"]}]}
     pages = nav.on_config(config)["nav"][1][nav.SECTION]
-    assert pages[0] == "architecture.md"
+    assert pages[0] == "results.md"
     assert "guo2015.md" in pages
     assert "index.md" not in pages
 
@@ -247,3 +250,54 @@ def test_a_table_is_put_between_its_marks_and_nowhere_else(tmp_path: Path) -> No
 def test_every_decision_is_listed() -> None:
     listed = (ROOT / "docs" / "adr" / "index.md").read_text(encoding="utf-8")
     assert [page.name for page in (ROOT / "docs" / "adr").glob("0*.md") if f"({page.name})" not in listed] == []
+
+
+LONGEST = {"README.md": 1000, "CHANGELOG.md": 500}
+"""Largest number of words of a page that is not 1,800."""
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md"], ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_page_is_short(page: Path) -> None:
+    assert len(page.read_text(encoding="utf-8").split()) <= LONGEST.get(str(page.relative_to(ROOT)), 1800)
+
+
+def test_all_pages_together_are_short() -> None:
+    pages = [*(ROOT / "docs").glob("*.md"), *READMES]
+    assert sum(len(page.read_text(encoding="utf-8").split()) for page in pages) <= 31_000
+
+
+def test_links_of_readmes_lead_to_pages_of_the_site() -> None:
+    readmes = script("readmes")
+    assert list(readmes.readmes().values()) == READMES
+    page = "[a](../../docs/vehicle.md#x) [b](../hsic/README.md) [c](../controller_fmu/guo2015/README.md#chart)"
+    assert readmes.on_page_markdown(page) == "[a](vehicle.md#x) [b](hsic.md) [c](guo2015.md#chart)"
+
+
+def test_factors_of_the_disturbed_studies_are_in_the_reference(generate: Any) -> None:
+    page = generate.scenarios_page()
+    for factor in (*generate.APA_WORLD, *generate.PARKING_WORLD):
+        assert "| " + " | ".join(generate.factor_row(factor)) + " |" in page, factor.name
+
+
+def test_every_figure_of_a_paper_is_in_the_reference(generate: Any) -> None:
+    page = generate.figures_page()
+    for item in generate.FIGURES:
+        assert f"### {item.number}: {item.title}\n" in page
+        assert item.draw is None or (ROOT / "docs" / "images" / "papers" / f"{item.name}.png").exists()
+
+
+def test_pages_that_the_code_names_exist() -> None:
+    """Help, messages and templates name pages of the documentation."""
+    named = re.compile(r"\bdocs/[\w/-]+\.(?:md|py)|(?<=page )[\w-]+(?= of the documentation)")
+    files = [
+        file
+        for folder in ("orchestrator", "controller_fmu", "fmus", "apa_cosim")
+        for file in (ROOT / folder).rglob("*")
+    ]
+    texts = {
+        file: file.read_text(encoding="utf-8") for file in files if file.suffix in (".py", ".txt", ".yaml", ".html")
+    }
+    found = [(file, page) for file, text in texts.items() for page in named.findall(text)]
+    paths = {page: ROOT / page if "/" in page else ROOT / "docs" / f"{page}.md" for _, page in found}
+    assert len(paths) > 3
+    assert [(file, page) for file, page in found if not paths[page].exists()] == []

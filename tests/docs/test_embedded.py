@@ -1,4 +1,4 @@
-"""docs/embedded.md: what does not depend on the machine is as the page says; how its script counts."""
+"""docs/tables/embedded.md: what does not depend on the machine is as the page says; how its script counts."""
 
 import struct
 import sys
@@ -9,7 +9,7 @@ import pytest
 from fmus.native.compilers import can_compile
 from tests.docs.scripts import DOCS, script
 
-PAGE = (DOCS / "embedded.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "tables" / "embedded.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The recipes of docs/extend.md followed to the letter: in a copy of the repository, blocks as edits, commands run."""
+"""The recipes of docs/extend*.md, followed literally: in a copy of the repository, blocks as edits, commands run."""
 
 import re
 import shutil
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "extend.md"
+PAGES = [ROOT / "docs" / "extend.md", ROOT / "docs" / "extend-tools.md"]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
 LEFT_OUT = shutil.ignore_patterns("dist", "__pycache__")
 OWN_TESTS = (
@@ -42,7 +42,7 @@ class Recipe(NamedTuple):
 
 
 def recipes() -> list[Recipe]:
-    parts = re.split(r"^## ", PAGE.read_text(encoding="utf-8"), flags=re.M)[1:]
+    parts = [part for page in PAGES for part in re.split(r"^## ", page.read_text(encoding="utf-8"), flags=re.M)[1:]]
     found = [Recipe(part.splitlines()[0], BLOCK.findall(part)) for part in parts]
     return [recipe for recipe in found if recipe.commands]
 
@@ -133,7 +133,7 @@ def test_the_newcomers_count_is_of_the_recipes() -> None:
     assert counted["Add a controller"] == (2, 1)
     assert counted["Add a sensor"] == (11, 2)
     assert [counted[f"Add {thing}"][0] for thing in ("an export", "a command", "a paper")] == [1, 1, 0]
-    table = PAGE.read_text(encoding="utf-8").split("## ")[0]
+    table = PAGES[0].read_text(encoding="utf-8").split("## ")[0]
     assert "2 lines in 1 file: an import and a row" in table
     assert "11 lines in 2 files, six of them the record" in table
 

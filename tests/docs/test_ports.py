@@ -28,7 +28,7 @@ def test_ports_are_as_the_page_says() -> None:
 @pytest.mark.skipif(not can_compile() or not is_known() or host() != "linux64", reason="needs a C compiler, linux64")
 def test_sizes_are_as_the_page_says(tmp_path: Any) -> None:
     ports = script("ports")
-    rows = [line.split("|")[1:-1] for line in block("native-fmu.md", "sizes").strip().splitlines()[2:]]
+    rows = [line.split("|")[1:-1] for line in block("targets.md", "sizes").strip().splitlines()[2:]]
     stated = {cells[0].strip(" `"): [float(cell) for cell in cells[1:]] for cells in rows}
     assert stated.keys() == {model.name for model in ports.LARGE}
     vehicle = ports.LARGE[0]
@@ -41,7 +41,7 @@ def test_sizes_are_as_the_page_says(tmp_path: Any) -> None:
 @pytest.mark.release
 @pytest.mark.skipif(not can_compile() or not is_known() or host() != "linux64", reason="needs a C compiler, linux64")
 def test_all_sizes_are_as_the_page_says(tmp_path: Any) -> None:
-    stated = block("native-fmu.md", "sizes").strip().splitlines()
+    stated = block("targets.md", "sizes").strip().splitlines()
     for line, found in zip(stated, script("ports").sizes(tmp_path), strict=True):
         numbers, expected = (list(map(float, re.findall(r"\d+(?= \|)", text))) for text in (line, found))
         assert numbers == pytest.approx(expected, rel=SIZE_TOLERANCE), "run docs/ports.py"

@@ -1,21 +1,17 @@
 """Other cars than the one a scenario is written for: the assist parks them, or the slot is too small."""
 
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.grid.cars import GEOMETRIC, lacking, park, parking_scenarios, shown
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import summarize
+from tests.orchestrator.parked_cars import GEOMETRIC, lacking, park, parking_scenarios
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
-
-AGAIN = "run docs/cars.py"
 
 
 def ended(name: str, *sets: str) -> tuple[str, str]:
@@ -37,14 +33,13 @@ def pairs() -> list[Any]:
 
 @pytest.mark.parametrize(("name", "car"), pairs())
 def test_a_car_that_fits_parks_and_another_is_refused_for_its_size(name: str, car: str) -> None:
-    """Every car in every parking scenario, as the page tells it."""
+    """Every car in every parking scenario, as docs/parking-use.md states."""
     found = park(name, car, fmu_files("native", lambda text: None))
     assert found.nearest > 0.0, "contact"
     if not found.lacks:
         assert found.outcome == "parked", found
     elif found.outcome != "parked":
         assert found.reason in GEOMETRIC or "outline in the slot" in found.reason, found
-    assert shown(found) == on_page()[name][car], AGAIN
 
 
 def test_all_cars_but_the_widest_fit_somewhere_and_most_do_not_everywhere() -> None:
@@ -85,19 +80,3 @@ def test_a_target_by_a_point_of_the_outline(of: str) -> None:
     ahead = {"front": 3.586, "rear": -0.85, "rear_axle": 0.0}.get(of, 1.368)
     left = {"left": 0.91, "right": -0.91}.get(of, 0.0)
     assert (x - left, y + ahead, heading) == pytest.approx((1.0, 2.0, 1.5707963), abs=1e-6)
-
-
-@cache
-def on_page() -> dict[str, dict[str, str]]:
-    """Return scenario -> car -> what docs/apa.md says of it."""
-    page = (Path(__file__).parents[2] / "docs" / "apa.md").read_text(encoding="utf-8")
-    head, _, *rows = page.split("<!-- cars -->")[1].split("<!-- /cars -->")[0].strip().splitlines()
-    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in (head, *rows)]
-    return {row[0].strip("`"): dict(zip(cells[0][1:], row[1:], strict=True)) for row in cells[1:]}
-
-
-def test_the_page_shows_every_car_in_every_scenario() -> None:
-    assert list(on_page()) == parking_scenarios(), AGAIN
-    assert all(list(row) == car_names() for row in on_page().values()), AGAIN
-    plain = [cell for row in on_page().values() for cell in row.values() if not cell.startswith("(")]
-    assert set(plain) == {"parked"}

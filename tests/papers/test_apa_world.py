@@ -18,7 +18,6 @@ from orchestrator.sweep.repeat import repeat_row
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.sweep import Options, sweep
 from orchestrator.sweep.table import Table
-from tests.docs.scripts import DOCS, script
 
 
 def columns(made: Study) -> dict[str, np.ndarray]:
@@ -95,11 +94,6 @@ def test_at_the_nominal_point_nothing_is_disturbed() -> None:
     assert all(
         own.low <= half.low <= half.nominal <= half.high <= own.high for own, half in zip(FACTORS, mild, strict=True)
     )
-
-
-def test_the_page_has_the_ranges() -> None:
-    page = (DOCS / "hunt.md").read_text(encoding="utf-8")
-    assert "\n".join(script("world").table()) in page, "run docs/world.py"
 
 
 def test_fewer_runs_are_the_first_of_more() -> None:

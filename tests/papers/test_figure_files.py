@@ -8,7 +8,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.papers.drive import drive
-from orchestrator.papers.figure_files import gallery_text, write_figures
+from orchestrator.papers.figure_files import write_figures
 from orchestrator.papers.paper_figures import FIGURES
 from orchestrator.papers.papers import papers
 from orchestrator.papers.result import CONCLUSION, Reproduction, Row, not_tested
@@ -42,14 +42,6 @@ def test_figures_of_a_paper_are_written_with_data_and_commands(tmp_path: Path) -
         rows = list(csv.DictReader(file))
     assert {row["line"] for row in rows} == {"car", "reference"}
     assert min(float(row["y"]) for row in rows if row["line"] == "reference") == pytest.approx(-1.0)
-
-
-def test_the_gallery_page_lists_every_figure_and_has_its_picture() -> None:
-    docs = Path(__file__).parents[2] / "docs"
-    page = (docs / "figures.md").read_text(encoding="utf-8")
-    for item in FIGURES:
-        assert gallery_text([item], "images/papers/").strip() in page, item.name
-        assert item.draw is None or (docs / "images" / "papers" / f"{item.name}.png").exists()
 
 
 def test_rows_as_csv_and_latex_and_their_total() -> None:

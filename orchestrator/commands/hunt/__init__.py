@@ -24,7 +24,7 @@ EXAMPLES = """examples:
   apa hunt apa-world --resume                     go on after Ctrl-C
   apa hunt --corpus runs/hunt-apa-world/finds     run what was found before again
 
-exit code: 0 nothing found, 1 a run breaks the requirement, 2 bad input, 130 interrupted; see docs/hunt.md.
+exit code: 0 nothing found, 1 a run breaks the requirement, 2 bad input, 130 interrupted; see docs/falsification.md.
 """
 
 

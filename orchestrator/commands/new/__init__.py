@@ -164,7 +164,7 @@ def _study(arguments: argparse.Namespace) -> int:
     given = scenario.parameters_of("vehicle")
     if scenario.system is not None and "vehicle" in scenario.system.files():
         raise BadInput(
-            "has a vehicle of its own, whose parameters only you know: docs/sweeps.md has the file", key=base
+            "has a vehicle of its own, whose parameters only you know: docs/studies.md has the file", key=base
         )
     x, y, heading = (float(given.get(f"start.{axis}", 0.0)) for axis in ("x", "y", "heading"))
     seen = _seen_from(file.parent, base) if base.endswith((".yaml", ".yml")) else base

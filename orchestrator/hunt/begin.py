@@ -52,7 +52,7 @@ def _open(journal: Path, about: str, *, resume: bool) -> None:
     """Make a journal, or go on with one of the same hunt; one that has not begun begins."""
     file = journal / "about.json"
     if resume and file.is_file():
-        if file.read_text(encoding="utf-8") != about:
+        if file.read_bytes() != about.encode():
             raise BadInput("the runs there are of another hunt, or of other models", file=journal, key="--resume")
         return
     shutil.rmtree(journal, ignore_errors=True)

@@ -3,6 +3,7 @@
 All that is run is kept in a journal. A hunt that goes on asks for the same runs again, and has those of before from it.
 """
 
+import io
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,7 +24,7 @@ from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.space import Seeds, Space
 from orchestrator.sweep.study.study import Columns, Goal, Study
 from orchestrator.sweep.verdict import judge_rows, limit_value, things, values_in
-from orchestrator.text.console import Meter
+from orchestrator.text.console import Meter, say
 from orchestrator.verdict.conditions import CONDITIONS
 
 PIECES = 4
@@ -105,12 +106,28 @@ ABORTED_MARGIN = 1.0
 
 
 def _kept(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
-    """Return what is in the journal of just these runs; None if nothing is."""
+    """Return what is in the journal of just these runs; None if nothing is, or what is there is damaged.
+
+    What cannot be read for lack of memory or files is not damaged: the error passes through.
+    """
     if not part.is_file():
         return None
-    with np.load(part) as found:
-        same = np.array_equal(found["shares"], shares) and np.array_equal(found["seeds"], seeds)
-        return Seen(found["margins"], found["words"]) if same else None
+    data = io.BytesIO(part.read_bytes())
+    try:
+        with np.load(data) as found:
+            if not (np.array_equal(found["shares"], shares) and np.array_equal(found["seeds"], seeds)):
+                return None
+            margins, words = found["margins"], found["words"]
+    except MemoryError:
+        raise
+    except Exception as error:  # zip, zlib, numpy's header: each has errors of its own
+        say(f"apa: warning: {part}: is damaged ({type(error).__name__}); its runs are made again")
+        return None
+    whole = margins.shape == words.shape == seeds.shape
+    if not whole or margins.dtype != np.float64 or words.dtype.kind != "U" or np.isnan(margins).any():
+        say(f"apa: warning: {part}: is not what a hunt writes; its runs are made again")
+        return None
+    return Seen(margins, words)
 
 
 def _margins(goal: Goal, job: Job, chunk: Chunk, rows: Array, columns: Columns) -> Array:

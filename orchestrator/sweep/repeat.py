@@ -13,11 +13,15 @@ from orchestrator.session.drive import drive
 from orchestrator.session.foreign import Foreign, load_fitting
 from orchestrator.session.session import Ran
 from orchestrator.sweep.job import chunk_scenario
-from orchestrator.sweep.table import Table
+from orchestrator.sweep.table import UNREADABLE, Table
+from orchestrator.text.errors import BadInput
 from orchestrator.text.owned import owned
 from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
+
+NEEDED = ("outcome", "reason", "duration", "shifts", "max_speed", *(f"final.{name}" for name in COMPARED))
+"""Columns of a table with which a run is compared."""
 
 
 class Repeated(NamedTuple):
@@ -53,8 +57,17 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
 
 def write_scenario(table: Table, number: int, file: Path) -> Scenario:
     """Write row ``number`` as a scenario that stands on its own; return it as it is read back."""
-    scenario = chunk_scenario(table.job, table.chunk(number), 0)
-    content = scenario.as_written()
+    lacks = [name for name in NEEDED if name not in table.names()]
+    if lacks:
+        raise BadInput(f"has no column {lacks[0]}", file=table.path)
+    chunk = table.chunk(number)
+    try:
+        scenario = chunk_scenario(table.job, chunk, 0)
+        content = scenario.as_written()
+    except BadInput:
+        raise
+    except UNREADABLE as error:
+        raise table.unusable(number, error) from error
     if scenario.system is not None:
         content["system"] = scenario.system.model_dump(mode="python", by_alias=True, exclude_defaults=True)
     name = f"{table.about['study']['name']}-row-{number}"
@@ -63,6 +76,6 @@ def write_scenario(table: Table, number: int, file: Path) -> Scenario:
 
 
 def _differences(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:
-    pairs = {name: (row[name], summary[name]) for name in ("outcome", "reason", "duration", "shifts", "max_speed")}
+    pairs = {name: (row[name], summary[name]) for name in NEEDED[: -len(COMPARED)]}
     pairs |= {f"final.{name}": (row[f"final.{name}"], summary["final"][name]) for name in COMPARED}
     return [name for name, (old, new) in pairs.items() if old != new and not (old != old and new is None)]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from pydantic import BaseModel
 
 from orchestrator.cosim.slave import Array
 from orchestrator.sweep.job import Chunk, job_from
@@ -18,6 +19,27 @@ from orchestrator.text.errors import BadInput
 
 OLDER = {ABOUT, b"ARROW:schema"}
 """What tables carry that were written before they had a checksum."""
+
+
+class StudyAbout(BaseModel):
+    """What a table says of its study, as far as it is used."""
+
+    name: str
+    title: str = ""
+    labels: list[str]
+
+
+class TableAbout(BaseModel):
+    """What a table says of itself, as far as it is used beside its job."""
+
+    study: StudyAbout
+    sources: str
+    versions: dict[str, str] = {}
+    job: dict[str, Any]
+
+
+UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError)
+"""What comes of a description that has no meaning."""
 
 
 class Table:
@@ -41,10 +63,11 @@ class Table:
             say(f"apa: warning: {path}: has no checksum over all of it; a damage in it may go unseen")
         try:
             self.about: dict[str, Any] = json.loads(metadata[ABOUT])
+            TableAbout.model_validate(self.about, strict=True)
             self.job = job_from(self.about["job"])
             self.labels: list[str] = self.about["study"]["labels"]
             """Columns that say what a run is called, where the study has such."""
-        except (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError) as error:
+        except UNREADABLE as error:
             text = f"does not say what its study is ({type(error).__name__}); it is damaged or of another version"
             raise BadInput(text, file=path) from error
         self.count = int(self._file.metadata.num_rows)
@@ -87,8 +110,16 @@ class Table:
     def chunk(self, number: int) -> Chunk:
         """Return one row as the design that made it."""
         row = self.row(number)
-        values: Array = np.array([[float(row[key]) for key in self.job.keys]]).reshape(1, -1)
-        return Chunk(0, number, values, np.array([row["run_seed"]], dtype=np.int64))
+        try:
+            values: Array = np.array([[float(row[key]) for key in self.job.keys]]).reshape(1, -1)
+            return Chunk(0, number, values, np.array([row["run_seed"]], dtype=np.int64))
+        except UNREADABLE as error:
+            raise self.unusable(number, error) from error
+
+    def unusable(self, number: int, error: Exception) -> BadInput:
+        """Return what to raise where a row cannot be made a run of."""
+        text = f"row {number} does not say what its run is ({type(error).__name__}: {_first_line(error)})"
+        return BadInput(text, file=self.path)
 
 
 def _first_line(error: Exception) -> str:

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.fuzz import fmi_calls, inputs, kills, logs, planner, systems, tables
+from tests.fuzz import fmi_calls, inputs, kills, logs, planner, received, systems, tables
 from tests.fuzz.limits import ask, limit_memory
 
 KINDS = {
@@ -19,6 +19,9 @@ KINDS = {
     "tables": tables.fuzz,
     "ssp": systems.fuzz,
     "planner": planner.fuzz,
+    "fmus": received.fuzz_fmus,
+    "journals": received.fuzz_journals,
+    "parquet": received.fuzz_parquet,
 }
 
 SLOWEST = 600.0
@@ -40,10 +43,10 @@ def main() -> int:
         ["run", "guo2015-case4", "--fmus", "none", "--set", "stop_time=1", "--no-page", "--out", str(log.parent)],
         SLOWEST,
     )
-    if asked.kind == "logs":
+    if asked.kind in ("logs", "parquet"):
         ask(["sweep", "guo2015-trial", "--every", "100", "--no-page", "--out", str(folder / "study")], SLOWEST)
         (folder / "study" / "guo2015-trial.parquet").rename(log.with_name("table.parquet"))
-    if asked.kind in ("inputs", "logs", "tables", "ssp"):
+    if asked.kind in ("inputs", "logs", "tables", "ssp", "fmus", "parquet"):
         limit_memory()
     tried, found, until = 0, 0, time.monotonic() + asked.seconds
     for words, mistake in KINDS[asked.kind](folder, log, random.Random(seed)):

@@ -9,10 +9,11 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
+from orchestrator.hunt.begin import _open
 from orchestrator.hunt.finds import BITS, NOTES, check_corpus
 from orchestrator.hunt.goal import goal_of
 from orchestrator.hunt.shrink import away
-from orchestrator.hunt.subject import Subject
+from orchestrator.hunt.subject import Subject, _kept
 from orchestrator.hunt.written import space_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -157,3 +158,39 @@ def test_what_cannot_be_hunted_is_refused(study: Any, capsys: pytest.CaptureFixt
     assert main(["hunt", "no-such-study"]) == 2
     assert main(["hunt", study(TRUE), "--budget", "3"]) == 2
     assert "expected a number from 50" in capsys.readouterr().err
+
+
+def test_resume_of_a_hunt_that_has_not_begun_begins_it(tmp_path: Path) -> None:
+    _open(tmp_path / "journal", "{}", resume=True)
+    assert (tmp_path / "journal" / "about.json").read_text() == "{}"
+    (tmp_path / "journal" / "about.json").write_bytes(b"\xff")
+    with pytest.raises(BadInput, match="of another hunt"):
+        _open(tmp_path / "journal", "{}", resume=True)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"margins": np.zeros(3)},
+        {"margins": np.array([np.nan, 1.0])},
+        {"words": np.array(["a"])},
+        {"words": np.array([1, 2])},
+        {"words": np.array(["a", None], dtype=object)},
+    ],
+)
+def test_a_journal_that_says_something_else_is_made_again(
+    change: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shares, seeds = np.zeros((2, 1)), np.array([1, 2])
+    good = {"shares": shares, "seeds": seeds, "margins": np.array([0.1, -0.1]), "words": np.array(["a", "b"])}
+    part = tmp_path / "000000.npz"
+    np.savez(part, **good)
+    found = _kept(part, shares, seeds)
+    assert found is not None
+    assert found.words.tolist() == ["a", "b"]
+    np.savez(part, **{**good, **change})
+    assert _kept(part, shares, seeds) is None
+    assert "made again" in capsys.readouterr().err
+    whole = part.read_bytes()
+    part.write_bytes(whole[: len(whole) // 2])
+    assert _kept(part, shares, seeds) is None

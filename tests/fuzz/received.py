@@ -149,7 +149,7 @@ def fuzz_journals(folder: Path, log: Path, draw: random.Random) -> Iterator[tupl
     """Go on with hunts whose journal was damaged, or says something else."""
     study, out, whole = folder / "short.yaml", folder / "hunt", folder / "whole"
     study.write_text(STUDY)
-    words = ["hunt", str(study), "--budget", "6", "--fmus", "none", "--workers", "1", "--out"]
+    words = ["hunt", str(study), "--budget", "50", "--fmus", "none", "--workers", "1", "--out"]
     yield [*words, str(whole)], ask([*words, str(whole)], 600.0).mistake
     if not (whole / "journal").is_dir():
         return

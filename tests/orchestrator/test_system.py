@@ -248,7 +248,7 @@ def test_a_loop_of_direct_feedthrough_is_said() -> None:
 def test_what_a_verdict_needs_and_nobody_plays_is_said() -> None:
     scenario, slaves = toys("roles: {pose: plant.pose}")
     said = " ".join(remarks(assemble(scenario, slaves), scenario.ending))
-    assert "has no output speed: that the car stands ends no run" in said
+    assert "has no output speed: standstill does not end the run" in said
     assert "no slave is called controller, nor plays its roles" in said
     assert "pose.x" not in said
 

@@ -8,6 +8,7 @@ accelerations; two quintics y(x) that meet anywhere, at any heading and curvatur
 import argparse
 import math
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,7 +29,7 @@ PLACES, HEADINGS, BENDS = 21, 21, 3
 """Of the meeting point along and across, of its headings, of its curvatures."""
 SPEEDS, ACCELERATIONS = 25, 7
 """Of the end speeds and end accelerations of one quintic over its final time: each at both ends."""
-AT_ONCE = 20_000
+AT_ONCE = 4_000
 
 
 class Curves(NamedTuple):
@@ -78,13 +79,12 @@ def _derivatives(c: Array) -> tuple[Array, Array, Array]:
     return c.T @ powers.T, c.T @ first.T, c.T @ second.T
 
 
-def _over_time(x: float, y: float, heading: float) -> "list[Curves]":
+def _over_time(x: float, y: float, heading: float) -> Iterator[Curves]:
     """Return single quintics x(t), y(t): end speeds times final time, and end accelerations along the path."""
     way = math.hypot(x, y)
     speeds = way * np.geomspace(0.15, 4.0, SPEEDS)
     bends = way * np.linspace(-9.0, 9.0, ACCELERATIONS)
     v0, v1, a0, a1 = (item.ravel() for item in np.meshgrid(speeds, speeds, bends, bends))
-    found = []
     for part in range(0, len(v0), AT_ONCE):
         at = slice(part, part + AT_ONCE)
         none = np.zeros_like(v0[at])
@@ -92,11 +92,10 @@ def _over_time(x: float, y: float, heading: float) -> "list[Curves]":
         px, vx, ax = _derivatives(_coefficients(none + x, -c * v0[at], -c * a0[at], none, -v1[at], a1[at]))
         py, vy, ay = _derivatives(_coefficients(none + y, -s * v0[at], -s * a0[at], none, none, none))
         norm = np.maximum(np.hypot(vx, vy), 1e-9)
-        found.append(Curves(px, py, np.arctan2(-vy, -vx), np.abs(vx * ay - vy * ax) / norm**3))
-    return found
+        yield Curves(px, py, np.arctan2(-vy, -vx), np.abs(vx * ay - vy * ax) / norm**3)
 
 
-def _joined(x: float, y: float, heading: float) -> "list[Curves]":
+def _joined(x: float, y: float, heading: float) -> Iterator[Curves]:
     """Return two quintics y(x) that meet at a point, with a heading and a curvature."""
     seen = math.atan2(y, x)
     shares, headings = np.linspace(0.1, 0.85, PLACES), seen * np.linspace(0.7, 2.8, HEADINGS)
@@ -105,14 +104,12 @@ def _joined(x: float, y: float, heading: float) -> "list[Curves]":
     )
     slope = np.tan(np.minimum(hs, 1.4))
     bend = ks * (1.0 + slope**2) ** 1.5
-    found = []
     for part in range(0, len(xs), AT_ONCE):
         at = slice(part, part + AT_ONCE)
         none = np.zeros_like(xs[at])
         last = _graph(none, none, none, none, xs[at], ys[at], slope[at], bend[at])
         first = _graph(xs[at], ys[at], slope[at], bend[at], none + x, none + y, none + math.tan(heading), none)
-        found.append(Curves(*(np.concatenate(both, axis=1) for both in zip(last, first, strict=True))))
-    return found
+        yield Curves(*(np.concatenate(both, axis=1) for both in zip(last, first, strict=True)))
 
 
 def _graph(x0: Array, y0: Array, m0: Array, b0: Array, x1: Array, y1: Array, m1: Array, b1: Array) -> Curves:

@@ -5,7 +5,15 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.common.arc_line_arc import ArcLineArc, arc_line_arc, largest_radius
-from controller_fmu.zhang2022.quintic import Derivatives, Quintic, quintic, shape
+from controller_fmu.zhang2022.quintic import (
+    Derivatives,
+    Knot,
+    Quintic,
+    quintic,
+    quintic_between,
+    shape,
+)
+from controller_fmu.zhang2022.time_quintic import knot_at, time_quintic
 from modelkit.vocabulary import Pose
 
 CANDIDATES = 9
@@ -13,6 +21,8 @@ ROUNDS = 4
 """Each looks at radii four times as close to each other as the one before."""
 SAMPLES = 32
 FOOT_STEPS = 5
+STEEP = 1e9
+"""Curvature [1/m] said of what is no path y(x)."""
 STEEPEST = 1.2
 """Largest heading of a path given as y(x) [rad]."""
 
@@ -45,6 +55,18 @@ class QuinticPath(NamedTuple):
     last: Quintic = Quintic()
     length: float = 0.0
     """Along the path [m]; known once it is chosen."""
+
+
+class EndConditions(NamedTuple):
+    """Speeds [m] and accelerations [m] at both ends of quintics over a final time of 1, along the path."""
+
+    start_speed: float
+    gaining: float
+    """Acceleration at the start."""
+    speed: float
+    """At the target."""
+    slowing: float
+    """Deceleration at the target."""
 
 
 class PathTried(NamedTuple):
@@ -128,6 +150,29 @@ def joined_at(start: Pose, x: float, y: float, slope: float) -> QuinticPath:
     return QuinticPath(
         PathStatus.FOUND, start, EMPTY, max(largest_curvature(last), largest_curvature(first)), first, line, last
     )
+
+
+def over_time(start: Pose, ends: EndConditions) -> QuinticPath:
+    """Return the path of quintics x(t), y(t) from ``start`` (slot frame) to the origin, as three quintics y(x).
+
+    They agree with it in position, slope and bend at thirds of the final time. The accelerations at both ends lie along
+    the path, so that it has no curvature there. No path if it does not lead on towards falling x.
+    """
+    c = math.cos(start.heading)
+    s = math.sin(start.heading)
+    speed, slowing = ends.speed, ends.slowing
+    x = time_quintic(start.x, -c * ends.start_speed, -c * ends.gaining, -speed, slowing)
+    y = time_quintic(start.y, -s * ends.start_speed, -s * ends.gaining, 0.0, 0.0)
+    high = Knot(start.x, start.y, math.tan(start.heading), 0.0)
+    upper = knot_at(x, y, 1.0 / 3.0)
+    lower = knot_at(x, y, 2.0 / 3.0)
+    if not 0.01 < lower.x < upper.x - 0.01 < high.x - 0.02:
+        return QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
+    first = quintic_between(upper, high)
+    line = quintic_between(lower, upper)
+    last = quintic_between(Knot(0.0, 0.0, 0.0, 0.0), lower)
+    peak = max(largest_curvature(last), largest_curvature(line), largest_curvature(first))
+    return QuinticPath(PathStatus.FOUND, start, EMPTY, peak, first, line, last)
 
 
 def at(path: QuinticPath, x: float) -> Derivatives:

@@ -1,8 +1,9 @@
 """The planner with the slot: several attempts, each checked for curvature and for the neighbours, or a refusal.
 
 First the paper's way: quintics through the ends of arc, line, arc of equal radii (``path.plan``). Where that path is
-too tight or touches a neighbour, the point at which the two quintics meet is searched on a grid: its place between
-start and target and the heading there. Of the paths that keep both limits the one of least curvature is taken.
+too tight or touches a neighbour, quintics x(t), y(t) over a final time are searched on a grid of their speeds and
+accelerations at both ends, then two quintics y(x) over the place where they meet and the heading there. Of the paths
+that keep both limits the one of least curvature is taken.
 """
 
 import math
@@ -10,17 +11,27 @@ import math
 from controller_fmu.common.slot_clearance import Outline, SlotBounds, is_pose_clear
 from controller_fmu.zhang2022.path import (
     EMPTY,
+    EndConditions,
     PathStatus,
     QuinticPath,
     joined_at,
     largest_curvature,
     length_of,
+    over_time,
     plan,
 )
 from controller_fmu.zhang2022.quintic import quintic
 from controller_fmu.zhang2022.slot import is_path_clear
 from modelkit.vocabulary import Pose
 
+SPEEDS = 6
+"""Speeds tried at start and target each."""
+LOWEST, SPEED_STEP = 0.25, 0.12
+"""The lowest and the step, as shares of the distance over the final time: with more the wheel would have to swing."""
+ACCELERATIONS = 5
+"""Accelerations tried at both ends each, from none."""
+ACCELERATION_STEP = 3.0
+"""In the same measure."""
 PLACES = 13
 """Meeting points tried in each direction."""
 HEADINGS = 13
@@ -45,16 +56,46 @@ def _chosen(start: Pose, radius: float, curvature_limit: float, car: Outline, sl
         return path
     if not is_pose_clear(start, car, slot) or not is_pose_clear(Pose(), car, slot):
         return QuinticPath(PathStatus.SLOT_BLOCKED, start, EMPTY, path.largest_curvature)
-    found = _search(start, curvature_limit, car, slot)
+    found = _over_time(start, curvature_limit, car, slot)
     if found.status == PathStatus.FOUND:
         return found
-    blocked = path.status == PathStatus.FOUND or found.status == PathStatus.SLOT_BLOCKED
+    met = _joined(start, curvature_limit, car, slot)
+    if met.status == PathStatus.FOUND:
+        return met
+    is_blocked = found.status == PathStatus.SLOT_BLOCKED or met.status == PathStatus.SLOT_BLOCKED
+    blocked = path.status == PathStatus.FOUND or is_blocked
     status = PathStatus.SLOT_BLOCKED if blocked else PathStatus.CURVATURE_LIMIT
     return QuinticPath(status, start, EMPTY, path.largest_curvature)
 
 
-def _search(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
-    """Return the clear path of least curvature over the grid; else whether any kept the curvature limit."""
+def _over_time(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
+    """Return the clear path of least curvature among quintics over time; else whether any kept the curvature limit."""
+    way = math.sqrt(start.x * start.x + start.y * start.y)
+    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
+    blocked = False
+    for first in range(SPEEDS):
+        for last in range(SPEEDS):
+            for gaining in range(ACCELERATIONS):
+                for slowing in range(ACCELERATIONS):
+                    ends = EndConditions(
+                        (LOWEST + SPEED_STEP * first) * way,
+                        ACCELERATION_STEP * gaining * way,
+                        (LOWEST + SPEED_STEP * last) * way,
+                        ACCELERATION_STEP * slowing * way,
+                    )
+                    path = over_time(start, ends)
+                    if path.largest_curvature <= best.largest_curvature:
+                        if is_path_clear(path, car, slot):
+                            best = path
+                        else:
+                            blocked = True
+    if best.status != PathStatus.FOUND and blocked:
+        return best._replace(status=PathStatus.SLOT_BLOCKED)
+    return best
+
+
+def _joined(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
+    """Return the clear path of least curvature of two quintics that meet; else whether any kept the curvature."""
     seen = math.atan2(start.y, start.x)
     best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
     blocked = False

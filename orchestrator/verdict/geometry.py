@@ -219,12 +219,12 @@ def key_points(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
 
 
 def _quintics(values: Mapping[str, float], plan: str, side: float, spacing: float) -> Array:
-    """Return points of y(x) = y0 + m0 t + c3 t^3 + c4 t^4 + c5 t^5 over t = (x - x0) / length, start to target."""
+    """Return points of y(x) = y0 + m0 t + c2 t^2 + ... + c5 t^5 with t = (x - x0) / length, from start to target."""
     parts = []
-    for x0, length, *c in _fields(values, f"{plan}.quintics", ("x0", "length", "y0", "m0", "c3", "c4", "c5")):
+    for x0, length, *c in _fields(values, f"{plan}.quintics", ("x0", "length", "y0", "m0", "c2", "c3", "c4", "c5")):
         count = math.ceil(min(max(1.0, length / spacing), MOST_POINTS)) if math.isfinite(length) else 1
         t = np.linspace(1.0, 0.0, count + 1)
-        y = np.polynomial.polynomial.polyval(t, [*c[:2], 0.0, *c[2:]])
+        y = np.polynomial.polynomial.polyval(t, c)
         parts.append(np.column_stack([x0 + length * t, side * y]))
     points = place(np.concatenate(parts), *pose_at(values, f"{plan}.origin"))
     return points if np.isfinite(points).all() else np.empty((0, 2))

@@ -1,20 +1,26 @@
 """What the HSIC paper states, typed from the source: 5 deg, 0.1 m, 0.5 m, key points, the 12 states and their rules."""
 
 import math
+from typing import Any
 
 import pytest
 
 from controller_fmu.common.arc_line_arc import arc_line_arc
+from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.hsic.characteristic_states import Characteristic, Errors, HsicStage, errors, recognise
 from controller_fmu.hsic.control import Situation, curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
-from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicThresholds
+from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicSystemParams, HsicThresholds
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import RULES, SpeedMode, SteerMode
 from controller_fmu.hsic.stages import Course, advance, is_parked
+from controller_fmu.hsic.system import HsicState, hsic_sample, hsic_start
+from controller_fmu.interface import ParkingInput, Reason
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
 GAIN, LIMIT, SLOT = HsicGains(), HsicThresholds(), HsicSlot()
+HSIC = HsicSystemParams()
 CAR = Car(wheelbase=2.62, front_overhang=0.966, rear_overhang=0.85, width=1.82)
 DEGREE = math.pi / 180.0
 
@@ -186,3 +192,62 @@ def test_ready_within_its_limits_else_another_approach_from_3_m(
     assert found.stage == (HsicStage.TURN_IN if ready else HsicStage.READY)
     if not ready:
         assert found.goal == Pose(p1.x + 3.0, p1.y, 0.0)
+
+
+def test_a_slot_too_near_for_two_arcs_moves_the_ready_point_ahead() -> None:
+    slot = SLOT._replace(slot_length=4.0)
+    ready = ready_point(slot, CAR, 4.0)
+    assert ready.x == pytest.approx(1.001 * math.sqrt(4.0 * ready.y * 4.0 - ready.y * ready.y), rel=1e-12)
+
+
+def at_rest(**inputs: Any) -> Any:
+    return ParkingInput()._replace(**inputs)
+
+
+def sampled(state: HsicState, **inputs: Any) -> HsicState:
+    return hsic_sample(state, at_rest(**inputs), HSIC, 10_000_000)
+
+
+def begun(**kept: Any) -> HsicState:
+    state = sampled(hsic_start(HSIC), odometry=to_world(Pose(1.0, 3.0, 0.0), SlotFrame(HSIC.target)))
+    return state._replace(**kept)
+
+
+@pytest.mark.parametrize(
+    ("lateral", "heading", "phase", "reason"),
+    [
+        (0.099, 0.0, HsicPhase.PARKED, Reason.NONE),
+        (0.101, 0.0, HsicPhase.FAILED, Reason.MISSED_TARGET),
+        (0.0, 5.1 * DEGREE, HsicPhase.FAILED, Reason.MISSED_TARGET),
+    ],
+)
+def test_a_car_with_straight_wheels_is_parked_within_the_printed_limits(
+    lateral: float, heading: float, phase: int, reason: int
+) -> None:
+    pose = to_world(Pose(0.0, lateral, heading), SlotFrame(HSIC.target))
+    after = sampled(begun(phase=HsicPhase.STRAIGHTEN), odometry=pose)
+    assert (after.phase, after.reason) == (phase, reason)
+
+
+@pytest.mark.parametrize(("share", "reason"), [(0.99, Reason.NONE), (1.01, Reason.LEFT_PATH)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_car_three_times_too_far_off_is_lost_but_not_on_its_way_to_the_ready_point(
+    share: float, reason: int, side: float
+) -> None:
+    state = begun()
+    off = state.found._replace(lateral=side * share * 3.0 * HSIC.threshold.lost_lateral)
+    pose = to_world(Pose(5.0, 2.0, 0.0), SlotFrame(HSIC.target))
+    turning = state._replace(found=off, course=state.course._replace(stage=HsicStage.TANGENT))
+    assert sampled(turning, odometry=pose).reason == reason
+    assert sampled(state._replace(found=off), odometry=pose).reason == Reason.NONE
+
+
+def test_the_arc_held_is_the_planned_one_and_the_integral_is_limited() -> None:
+    state = begun(integral=5.0)
+    pose = to_world(Pose(5.0, 2.0, 0.0), SlotFrame(HSIC.target))
+    radius = HSIC.hsic.slot.radius_reserve * HSIC.car.wheelbase
+    radius /= math.tan(HSIC.car.steering.angle_limit / HSIC.car.steering.ratio)
+    assert state.course.points.radius == pytest.approx(radius, rel=1e-12)
+    for integral in (5.0, -5.0):
+        after = sampled(state._replace(integral=integral), odometry=pose)
+        assert after.integral == pytest.approx(math.copysign(1.0, integral))

@@ -2,13 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from controller_fmu.common.slot_clearance import is_pose_clear, outline_of
 from controller_fmu.zhang2022.params import ZhangSlot
-from controller_fmu.zhang2022.path import PathStatus, at, plan
+from controller_fmu.zhang2022.path import EndConditions, PathStatus, at, over_time, plan
 from controller_fmu.zhang2022.planner import plan_in_slot
 from controller_fmu.zhang2022.slot import is_path_clear, slot_bounds
+from controller_fmu.zhang2022.time_quintic import motion_at, time_quintic
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
@@ -54,4 +56,38 @@ def test_a_start_against_a_neighbour_and_a_slot_too_short_are_refused_with_the_r
 
 def test_a_slot_of_no_length_is_not_regarded() -> None:
     unknown = slot_bounds(ZhangSlot(), CAR)
-    assert plan_in_slot(Pose(9.5, 2.65, 0.0), 5.0, LIMIT, OUTLINE, unknown) == plan(Pose(9.5, 2.65, 0.0), 5.0, LIMIT)
+    path = plan_in_slot(Pose(9.5, 2.65, 0.0), 5.0, LIMIT, OUTLINE, unknown)
+    assert path._replace(length=0.0) == plan(Pose(9.5, 2.65, 0.0), 5.0, LIMIT)
+
+
+@pytest.mark.parametrize("heading", [0.0, -0.1])
+def test_quintics_over_time_keep_start_target_and_curvature(heading: float) -> None:
+    start = Pose(8.04, 2.98, heading)
+    way = math.hypot(start.x, start.y)
+    path = over_time(start, EndConditions(0.45 * way, 6.0 * way, 0.45 * way, 6.0 * way))
+    assert path.status == PathStatus.FOUND
+    for x, y, slope in ((start.x - 1e-9, start.y, math.tan(heading)), (1e-9, 0.0, 0.0)):
+        assert at(path, x) == pytest.approx((y, slope, 0.0), abs=1e-6)
+    for x in (path.line.x0, path.first.x0):
+        below, above = at(path, x - 1e-9), at(path, x + 1e-9)
+        assert below == pytest.approx(above, abs=1e-6)
+    times = np.linspace(0.0, 1.0, 200)
+    along = [motion_at(time_quintic(start.x, -math.cos(heading) * 0.45 * way, -math.cos(heading) * 6.0 * way,
+                                    -0.45 * way, 6.0 * way), t).p for t in times]  # fmt: skip
+    aside = [motion_at(time_quintic(start.y, -math.sin(heading) * 0.45 * way, -math.sin(heading) * 6.0 * way,
+                                    0.0, 0.0), t).p for t in times]  # fmt: skip
+    assert max(abs(at(path, x).y - y) for x, y in zip(along, aside, strict=True)) < 0.02
+
+
+def test_a_time_quintic_has_the_speeds_and_accelerations_asked_for() -> None:
+    quintic = time_quintic(3.0, -0.7, 0.4, -0.2, 1.1)
+    assert motion_at(quintic, 0.0) == pytest.approx((3.0, -0.7, 0.4))
+    assert motion_at(quintic, 1.0) == pytest.approx((0.0, -0.2, 1.1))
+
+
+def test_a_start_near_the_slot_s_front_is_parked_by_quintics_over_time() -> None:
+    start = Pose(8.0372, 2.9829, 0.0)
+    path = plan_in_slot(start, 5.0, LIMIT, OUTLINE, SLOT)
+    assert path.status == PathStatus.FOUND
+    assert is_path_clear(path, OUTLINE, SLOT)
+    assert path.length > math.hypot(start.x, start.y)

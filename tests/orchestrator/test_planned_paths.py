@@ -54,7 +54,7 @@ def test_a_quintic_to_the_left_is_the_mirror_image() -> None:
     values = {"zhang2022.plan.side": 1.0}
     values |= {f"zhang2022.plan.origin.{key}": at for key, at in (("x", 1.0), ("y", 2.0), ("heading", np.pi / 2))}
     for number in (1, 2, 3):
-        row = {"x0": 3.0 - number, "length": 1.0, "y0": 0.5, "m0": 0.1, "c3": 0.2, "c4": 0.3, "c5": 0.4}
+        row = {"x0": 3.0 - number, "length": 1.0, "y0": 0.5, "m0": 0.1, "c2": 0.05, "c3": 0.15, "c4": 0.3, "c5": 0.4}
         values |= {f"zhang2022.plan.quintics[{number}].{key}": value for key, value in row.items()}
     right = sample_path(values)
     assert right[0] == pytest.approx([1.0 - 1.5, 2.0 + 3.0])

@@ -16,7 +16,7 @@ class TimeQuintic(NamedTuple):
     c5: float
 
 
-class Motion(NamedTuple):
+class TimedValue(NamedTuple):
     """Value of a quintic at one time, and its first two derivatives."""
 
     p: float
@@ -39,9 +39,9 @@ def time_quintic(p0: float, v0: float, a0: float, v1: float, a1: float) -> TimeQ
     )
 
 
-def motion_at(q: TimeQuintic, t: float) -> Motion:
+def motion_at(q: TimeQuintic, t: float) -> TimedValue:
     """Return the motion at ``t``."""
-    return Motion(
+    return TimedValue(
         q.p0 + t * (q.v0 + t * (q.a + t * (q.c3 + t * (q.c4 + t * q.c5)))),
         q.v0 + t * (2.0 * q.a + t * (3.0 * q.c3 + t * (4.0 * q.c4 + t * 5.0 * q.c5))),
         2.0 * q.a + t * (6.0 * q.c3 + t * (12.0 * q.c4 + t * 20.0 * q.c5)),

@@ -251,3 +251,14 @@ def test_the_arc_held_is_the_planned_one_and_the_integral_is_limited() -> None:
     for integral in (5.0, -5.0):
         after = sampled(state._replace(integral=integral), odometry=pose)
         assert after.integral == pytest.approx(math.copysign(1.0, integral))
+
+
+def test_the_wheels_held_while_counter_steering_are_those_of_the_planned_arc() -> None:
+    state = begun(direction=-1, phase=HsicPhase.PATH_TRACKING)
+    points = state.course.points
+    course = state.course._replace(stage=HsicStage.COUNTER, goal=Pose(), hold=False)
+    pose = to_world(Pose(1.5, 0.3, 0.3), SlotFrame(HSIC.target))
+    after = sampled(state._replace(course=course), odometry=pose, measured_speed=-0.4)
+    assert after.course.stage == HsicStage.COUNTER
+    assert RULES[after.characteristic][1] == SteerMode.EXTREMUM_HOLD
+    assert abs(after.angle) == pytest.approx(math.atan(HSIC.car.wheelbase / points.radius), rel=1e-9)

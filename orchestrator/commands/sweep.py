@@ -196,8 +196,27 @@ def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
 
         with verdict_stands("the result page"):
             _replay_worst(table, arguments.replays)
-            written["page"] = write_page(table)
+            written["page"] = write_page(table, _write_live_page(table))
     return written
+
+
+def _write_live_page(path: Path) -> str:
+    """Write the page that replays runs beside the table; return its name, empty where it cannot be made."""
+    from fmus.native.web import can_build
+    from orchestrator.sweep.page.explorer import SUFFIX, live_scenario
+    from orchestrator.sweep.table import Table
+
+    page = path.with_name(f"{path.stem}{SUFFIX}")
+    scenario = live_scenario(Table(path)) if can_build() else None
+    if scenario is None:
+        page.unlink(missing_ok=True)
+        return ""
+    from orchestrator.live.page import write_live
+
+    with verdict_stands(str(page)):
+        write_live(page, [scenario])
+        return page.name
+    return ""
 
 
 def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:

@@ -1,15 +1,14 @@
 """What the page of a study needs to list the runs in a cell of its maps, and to replay any of them in the browser."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import DONE, MISSED, Scenario
 from orchestrator.sweep.job import Job, chunk_scenario
-from orchestrator.sweep.page.statistics import Map, deciding_limit, default_axes, for_people, varied
+from orchestrator.sweep.page.statistics import Map, axis, deciding_limit, default_axes, for_people, varied
 from orchestrator.sweep.table import Table
 
 MAX_ROWS, MAX_ROWS_OF_CELL = 4_000, 60
@@ -52,15 +51,11 @@ def live_scenario(table: Table) -> Scenario | None:
 
     It cannot where FMUs, faults that are drawn by lot, steps or the controller's model are the study's.
     """
-    from orchestrator.live.situation import why_not
-
     scenario = chunk_scenario(table.job, table.chunk(0), 0)
-    if page_names(table.job) is None or why_not(scenario) or scenario.faults:
+    if page_names(table.job) is None or scenario.system is not None or scenario.faults:
         return None
     column = "controller.system"
     systems = np.unique(table.column(column)).tolist() if column in table.job.keys else []
-    from orchestrator.scenario.models import models_for
-
     if any(models_for({"system": int(value)}) != scenario.models for value in systems):
         return None
     return scenario.model_copy(update={"name": f"{table.about['study']['name']}-row"})
@@ -78,8 +73,6 @@ def _chosen(table: Table, shown: list[Map]) -> list[Any]:
     axes = default_axes(table)
     if axes is None or axes.split is None:
         return [np.ones(table.count, dtype=bool)] * len(shown)
-    from orchestrator.sweep.page.statistics import axis
-
     cell = axis(table, axes.split).cell
     return [cell == number for number in range(len(shown))]
 
@@ -155,17 +148,3 @@ def _replays(table: Table, rows: list[int], live: str) -> dict[str, Any]:
         "names": [*names, *seeds],
         "values": {row: [*(float(column[row]) for column in columns), *[int(own[row])] * len(seeds)] for row in rows},
     }
-
-
-def write_live_page(table: Table, path: Path) -> str:
-    """Write the page that replays runs beside the table; return its name, empty where it cannot be made."""
-    from fmus.native.web import can_build
-
-    scenario = live_scenario(table) if can_build() else None
-    if scenario is None:
-        path.unlink(missing_ok=True)
-        return ""
-    from orchestrator.live.page import write_live
-
-    write_live(path, [scenario])
-    return path.name

@@ -13,7 +13,7 @@ import yaml
 from fmus.files import write_whole
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import DONE, MISSED
-from orchestrator.sweep.page.explorer import SUFFIX, explorer_data, write_live_page
+from orchestrator.sweep.page.explorer import explorer_data
 from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
 from orchestrator.sweep.page.statistics import (
     deciding_limit,
@@ -48,11 +48,10 @@ NEVER = 1e8
 escape = html.escape
 
 
-def write_page(path: Path) -> Path:
+def write_page(path: Path, live: str = "") -> Path:
     """Write the page beside the table at ``path``; return where it is."""
     table = Table(path)
     page = path.with_suffix(".html")
-    live = write_live_page(table, path.with_name(f"{path.stem}{SUFFIX}"))
     write_whole(page, study_page(table, live))
     return page
 

@@ -1,7 +1,5 @@
 """The planned path and the points of every system are outputs: the log, the page and the pictures have them."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -10,14 +8,8 @@ from modelkit.signal import Role
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.seen import fixed_points, planned_paths
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.session import run_scenario
 from orchestrator.verdict.geometry import key_points, sample_path
-
-
-@cache
-def drive(name: str) -> Recording:
-    return run_scenario(load_scenario(name)).recording
+from tests.native_runs import native_recording
 
 
 def driven(recording: Recording) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
@@ -35,12 +27,12 @@ def farthest(recording: Recording) -> float:
 
 @pytest.mark.parametrize("name", ["zhang2022", "guo2015-sine", "guo2015-case1", "adaptive"])
 def test_the_car_drives_along_the_planned_path(name: str) -> None:
-    recording = drive(name)
+    recording = native_recording(name)
     assert farthest(recording) < (0.25 if name == "guo2015-case1" else 0.07)
 
 
 def test_the_quintics_of_zhang_lead_from_the_start_to_the_target_in_the_final_time() -> None:
-    recording = drive("zhang2022")
+    recording = native_recording("zhang2022")
     (path,) = planned_paths(recording)
     assert path[0] == pytest.approx([8.5, 2.8], abs=1e-9)
     assert path[-1] == pytest.approx([0.0, 0.0], abs=1e-9)
@@ -63,7 +55,7 @@ def test_a_quintic_to_the_left_is_the_mirror_image() -> None:
 
 
 def test_the_points_of_guo_are_those_of_table_2() -> None:
-    points = fixed_points(drive("guo2015-case4"))
+    points = fixed_points(native_recording("guo2015-case4"))
     printed = {"Q1": (-3.798, -1.522), "Q2": (-3.077, -0.830), "Q3": (-7.608, -3.056), "Q4": (-5.108, -3.056)}
     assert set(points) == set(printed)
     for name, at in printed.items():
@@ -71,7 +63,7 @@ def test_the_points_of_guo_are_those_of_table_2() -> None:
 
 
 def test_the_points_of_hsic_lie_on_its_planned_path() -> None:
-    recording = drive("hsic")
+    recording = native_recording("hsic")
     points = fixed_points(recording)
     assert list(points) == ["P1", "P2", "P3", "P4"]
     path = planned_paths(recording)[-1]
@@ -89,7 +81,7 @@ def test_the_planned_path_of_preview_is_its_road_and_its_points_lie_ahead() -> N
 
 
 def test_the_points_of_preview_are_at_their_distances() -> None:
-    recording = run_scenario(load_scenario("preview", ["stop_time=5"])).recording
+    recording = native_recording("preview", "stop_time=5")
     row = recording.values_at("controller", len(recording.t) - 2)
     for name, length in (("la1", "l1"), ("la2", "l2")):
         assert row[f"preview.{name}.x"] == pytest.approx(row["preview.s"] + row[f"preview.{length}"], abs=1e-6)

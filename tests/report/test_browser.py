@@ -10,8 +10,8 @@ from matplotlib.image import imread
 
 from orchestrator.report.replay import replay_page
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import summarize
+from tests.native_runs import native_recording
 
 CLOCK = "window.replay.t"
 
@@ -235,9 +235,9 @@ def test_picture_table_and_video_to_take_home(show: Any, replay: Any, tmp_path: 
 
 
 def test_somebody_who_comes_and_goes_is_no_grey_box(show: Any, tmp_path: Path) -> None:
-    ran = run_scenario(load_scenario("apa-pedestrian", ["stop_time=14"]))
+    recording = native_recording("apa-pedestrian", "stop_time=14")
     path = tmp_path / "report.html"
-    path.write_text(replay_page(ran.recording, summarize(ran.recording, load_scenario("apa-pedestrian"), 1.0), []))
+    path.write_text(replay_page(recording, summarize(recording, load_scenario("apa-pedestrian"), 1.0), []))
     page, _ = show(path, "#t=5")
     skin = """() => { const c = document.getElementById('view'), g = c.getContext('2d');
         const d = new Uint32Array(g.getImageData(0, 0, c.width, c.height).data.buffer);

@@ -12,14 +12,13 @@ from modelkit.vocabulary import Pose
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import MOST_PLANS, found_slot, plans_of, wanted_pose
 from orchestrator.report.run_data import ribbons_of
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.session import run_scenario
 from orchestrator.verdict.geometry import sample_path
+from tests.native_runs import native_recording
 
 
 @pytest.fixture(scope="module")
 def recording() -> Any:
-    return run_scenario(load_scenario("apa-parallel")).recording
+    return native_recording("apa-parallel")
 
 
 @pytest.mark.parametrize("direction", [1, -1])

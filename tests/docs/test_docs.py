@@ -288,16 +288,10 @@ def test_every_figure_of_a_paper_is_in_the_reference(generate: Any) -> None:
 
 def test_pages_that_the_code_names_exist() -> None:
     """Help, messages and templates name pages of the documentation."""
-    named = re.compile(r"\bdocs/[\w/-]+\.(?:md|py)|(?<=page )[\w-]+(?= of the documentation)")
-    files = [
-        file
-        for folder in ("orchestrator", "controller_fmu", "fmus", "apa_cosim")
-        for file in (ROOT / folder).rglob("*")
-    ]
-    texts = {
-        file: file.read_text(encoding="utf-8") for file in files if file.suffix in (".py", ".txt", ".yaml", ".html")
-    }
-    found = [(file, page) for file, text in texts.items() for page in named.findall(text)]
-    paths = {page: ROOT / page if "/" in page else ROOT / "docs" / f"{page}.md" for _, page in found}
-    assert len(paths) > 3
-    assert [(file, page) for file, page in found if not paths[page].exists()] == []
+    named = re.compile(r"\bdocs/[\w/-]+\.(?:md|py)|page [\w-]+ of the documentation")
+    folders = ("orchestrator", "controller_fmu", "fmus/contents", "fmus/native", "apa_cosim")
+    files = [file for folder in folders for suffix in ("py", "txt") for file in (ROOT / folder).rglob(f"*.{suffix}")]
+    found = {(page, file) for file in files for page in named.findall(file.read_text(encoding="utf-8"))}
+    places = {page: page if "/" in page else f"docs/{page.split()[1]}.md" for page, _ in found}
+    assert len(places) > 3
+    assert [(page, file) for page, file in found if not (ROOT / places[page]).exists()] == []

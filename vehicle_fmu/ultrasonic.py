@@ -104,45 +104,43 @@ def heard_distances(
     return distances
 
 
+class Seen(NamedTuple):
+    """A box of the scene with all that the sensors share of it."""
+
+    box: OrientedBox
+    corners: Corners
+    radius: float
+    """Of the circle around it [m]."""
+
+
 def _hear(
     distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, side: Point, box: Box
 ) -> tuple[float, ...]:
-    seen = oriented(box)
-    around = oriented_corners(seen)
-    radius = reach(box)
+    turned = oriented(box)
+    seen = Seen(turned, oriented_corners(turned), reach(box))
     return tuple(
-        _nearer(nearest, pose, ahead, mount, side, seen, around, radius)
+        _nearer(nearest, pose, ahead, mount, side, seen)
         for nearest, mount in zip(distances, sensors.mounts, strict=True)
     )
 
 
-def _nearer(
-    nearest: float,
-    pose: Pose,
-    ahead: Point,
-    mount: SensorMount,
-    side: Point,
-    box: OrientedBox,
-    around: Corners,
-    radius: float,
-) -> float:
+def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: Point, seen: Seen) -> float:
     """Return the smaller of ``nearest`` and what one sensor hears of a box.
 
-    ``ahead``: the car's unit vector; ``side``: sine and cosine of half the cone's angle; ``radius``: of the circle
-    around the box.
+    ``ahead``: the car's unit vector; ``side``: sine and cosine of half the cone's angle.
     """
     start = Point(
         pose.x + mount.x * ahead.x - mount.y * ahead.y,
         pose.y + mount.x * ahead.y + mount.y * ahead.x,
     )
-    dx = box.box.x - start.x
-    dy = box.box.y - start.y
-    far = nearest + radius
+    dx = seen.box.box.x - start.x
+    dy = seen.box.box.y - start.y
+    far = nearest + seen.radius
     if dx * dx + dy * dy >= far * far:
         return nearest
     direction = pose.heading + mount.yaw
     cone = Cone(start, Point(math.cos(direction), math.sin(direction)), side)
-    return min(nearest, cone_gap(cone, box, around))
+    return min(nearest, cone_gap(cone, seen.box, seen.corners))
 
 
 def _reading(random: int, distance: float, ear: Ear) -> tuple[int, float]:

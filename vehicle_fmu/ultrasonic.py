@@ -104,7 +104,7 @@ def heard_distances(
     return distances
 
 
-class Seen(NamedTuple):
+class ScannedBox(NamedTuple):
     """A box of the scene with all that the sensors share of it."""
 
     box: OrientedBox
@@ -117,14 +117,14 @@ def _hear(
     distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, side: Point, box: Box
 ) -> tuple[float, ...]:
     turned = oriented(box)
-    seen = Seen(turned, oriented_corners(turned), reach(box))
+    seen = ScannedBox(turned, oriented_corners(turned), reach(box))
     return tuple(
         _nearer(nearest, pose, ahead, mount, side, seen)
         for nearest, mount in zip(distances, sensors.mounts, strict=True)
     )
 
 
-def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: Point, seen: Seen) -> float:
+def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: Point, seen: ScannedBox) -> float:
     """Return the smaller of ``nearest`` and what one sensor hears of a box.
 
     ``ahead``: the car's unit vector; ``side``: sine and cosine of half the cone's angle.

@@ -95,7 +95,11 @@ def test_names_that_are_none_cost_that_test_alone(name: str, tmp_path: Path) -> 
 
 @pytest.mark.release
 @pytest.mark.parametrize(
-    ("kind", "seconds"), [("inputs", 5), ("tables", 3), ("ssp", 3), ("logs", 5), ("calls", 2), ("kills", 10)]
+    ("kind", "seconds"),
+    [
+        *(("inputs", 5), ("tables", 3), ("ssp", 3), ("logs", 5), ("calls", 2), ("kills", 10)),
+        *(("fmus", 3), ("journals", 5), ("parquet", 5)),
+    ],
 )
 def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.fuzz", kind, "--seconds", str(seconds), "--seed", "20150915"]

@@ -13,6 +13,7 @@ from orchestrator.foreign import worker
 from orchestrator.foreign.process_slave import answer_of
 from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
 from orchestrator.log.messages import read_messages
+from orchestrator.text.console import console, printable_streams
 from orchestrator.text.errors import BadInput
 from orchestrator.text.printable import CONTROL
 from tests.orchestrator import bad_fmus
@@ -158,3 +159,19 @@ def test_without_bubblewrap_a_sandbox_is_refused_in_one_line(
     said = capsys.readouterr().err
     assert f"needs bubblewrap ({PROGRAM})" in said
     assert said.count("\n") == 1
+
+
+def test_no_control_character_of_a_text_reaches_a_stream(capsys: pytest.CaptureFixture[str]) -> None:
+    from rich.table import Table
+
+    table = Table("a column\x1b]0;title\x07")
+    table.add_row("a cell \x9b31m")
+    with printable_streams():
+        print("a line \x1b[2J\u202e", "of\ttwo\nlines")
+        print("an error \x1b[2J", file=sys.stderr)
+        console().print(table, "a text \x1b[31m")
+        assert main(["run", "no\x1b[2Jsuch"]) == 2
+    out, err = capsys.readouterr()
+    assert not CONTROL.search(out + err)
+    assert "a line \\x1b[2J\\u202e of\ttwo\nlines" in out
+    assert "a cell \\x9b31m" in out

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -198,3 +199,44 @@ def test_set_and_json(study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert (told["count"], told["made"], told["table"]) == (COUNT, COUNT, str(tmp_path / "trial.parquet"))
     assert Table(Path(told["table"])).job.scenario["vehicle"]["start.x"] == 0.01
     assert main(["sweep", str(study), "--out", str(tmp_path), "--set", "nothing"]) == 2
+
+
+def without(column: str) -> Callable[[Any, dict[str, Any]], Any]:
+    return lambda found, about: found.drop_columns([column])
+
+
+def about(change: Callable[[dict[str, Any]], object]) -> Callable[[Any, dict[str, Any]], Any]:
+    def changed(found: Any, told: dict[str, Any]) -> Any:
+        change(told)
+        return found
+
+    return changed
+
+
+FORGED = {
+    "no final pose": without("final.x"),
+    "no outcome": without("outcome"),
+    "no seed": without("run_seed"),
+    "key of no scenario": about(lambda told: told["job"]["scenario"].update({"start.y": 1.0})),
+    "scenario of numbers": about(lambda told: told["job"].update(scenario=5)),
+    "study without a name": about(lambda told: told["study"].pop("name")),
+    "labels of numbers": about(lambda told: told["study"].update(labels=[1])),
+    "sources of numbers": about(lambda told: told.update(sources=1)),
+}
+
+
+@pytest.mark.parametrize("name", FORGED)
+def test_a_table_that_says_something_else_is_refused_in_one_line(
+    name: str, whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its checksum is right, or it has none, as tables of older versions."""
+    import pyarrow.parquet as pq
+
+    found = pq.read_table(whole)
+    told = json.loads(found.schema.metadata[b"apa"])
+    odd = FORGED[name](found, told)
+    pq.write_table(odd.replace_schema_metadata({b"apa": json.dumps(told).encode()}), tmp_path / "odd.parquet")
+    assert main(["replay", str(tmp_path / "odd.parquet"), "--row", "0", "--no-page"]) == 2
+    (*warnings, said) = capsys.readouterr().err.splitlines()
+    assert all("has no checksum" in line for line in warnings)
+    assert said.startswith(f"apa: {tmp_path / 'odd.parquet'}")

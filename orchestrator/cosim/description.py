@@ -16,6 +16,7 @@ from modelkit.variables import Variable, variables
 from orchestrator.cosim.declared import check_declared
 from orchestrator.cosim.slave import Ports, Scale
 from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.quantities import MOST_WHOLE
 
 WHOLE = ("Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64")
 KINDS: dict[str, type] = {
@@ -189,6 +190,8 @@ def _variable(scalar: ModelVariable, name: str, written: object, known: Variable
         start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
     except (ValueError, OverflowError):
         raise BadInput(f"{shown(text)} is no start value of type {scalar.type}", file=path, key=name) from None
+    if kind is int and not -MOST_WHOLE <= start < MOST_WHOLE:
+        raise BadInput(f"start value {shown(text)} is beyond 32-bit integers", file=path, key=name)
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
     states = _states(scalar, known if known is not None and known.kind is kind else None)
     roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())

@@ -33,11 +33,14 @@ from orchestrator.foreign.limits import FmuLimits
 from orchestrator.foreign.sandbox import sandboxed
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 from orchestrator.text.printable import printable
+from orchestrator.text.quantities import MOST_WHOLE
 
 LAST = 2.0
 """For a process to end that has nothing to say any more [s]."""
 LOOK = 0.05
 """Between two looks at the clock [s]."""
+WIDE = ("UInt32", "Int64", "UInt64", "Enumeration")
+"""Types of FMI 3.0 that hold more than 32-bit integers."""
 ANSWERS = (worker.DONE, worker.REFUSED, worker.MESSAGE)
 LogCallback = Callable[[str, int, str], None]
 
@@ -103,6 +106,7 @@ class ProcessSlave:
         self._is_running = self._is_fresh = False
         self._t_ns = 0
         self._in, self._out = self._groups(self.inputs), self._groups(self.outputs)
+        self._wide = self._wide_outputs()
         self._shared: _Shared | None = None
         self._seen = b""
 
@@ -152,10 +156,28 @@ class ProcessSlave:
         if not self._is_fresh:
             self._ask(worker.OUTPUTS, b"", f"giving outputs at {self._t_ns / 1e9:g} s")
         values[self._out.order] = shared.outputs
+        if len(self._wide):
+            self._check_wide()
         if isnan(shared.ones.dot(shared.outputs)):
             names = [self.outputs.names[place] for place in self.outputs.used if isnan(values[place])]
             if names:
                 raise RunError(f"{self.name} gives NaN for {', '.join(names)} at {self._t_ns / 1e9:g} s")
+
+    def _wide_outputs(self) -> Indices:
+        """Return the places of outputs of types that hold more than the 32-bit integers that are supported."""
+        named = {name: str(item.type) for item in self._description.modelVariables for name in element_names(item)}
+        wide = WIDE if self._version == 3 else ()
+        places = [self.outputs.index[name] for name in self.outputs.names if named.get(name) in wide]
+        return np.array(places, dtype=np.intp)
+
+    def _check_wide(self) -> None:
+        """Raise ``RunError`` if an output is no 32-bit integer: a log could not hold it."""
+        beyond = self._wide[np.abs(self.outputs.values[self._wide]) >= MOST_WHOLE]
+        if len(beyond):
+            name, value = self.outputs.names[beyond[0]], self.outputs.values[beyond[0]]
+            raise RunError(
+                f"{self.name} gives {value:.17g} for {name} at {self._t_ns / 1e9:g} s, beyond 32-bit integers"
+            )
 
     def send_inputs(self) -> None:
         """In Initialization Mode, hand over the inputs; later they go with the step."""

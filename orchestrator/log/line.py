@@ -4,6 +4,9 @@ from typing import NamedTuple
 
 LEVELS = {0: "unknown", 1: "debug", 2: "info", 3: "warning", 4: "error", 5: "fatal"}
 
+MAX_LINES = 10_000
+"""More are kept in the log only."""
+
 
 class Line(NamedTuple):
     """One message."""

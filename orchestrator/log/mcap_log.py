@@ -23,7 +23,7 @@ from orchestrator.cosim.master import End
 from orchestrator.cosim.recording import to_json
 from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.drawing import scene
-from orchestrator.log.line import Line, line_of
+from orchestrator.log.line import MAX_LINES, Line, line_of
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import VARIABLES, with_checksum
@@ -46,6 +46,8 @@ SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
 TRAIL_STEP_NS = 200_000_000
 TRAIL_POSES = 100
+MAX_TRAIL_POSES = 20_000
+"""Kept of a run of any length; the first hour has fewer."""
 AXES = ("x", "y", "heading")
 
 
@@ -110,7 +112,8 @@ class McapLog:
         if self._file.open:
             line = Log(timestamp=scene.stamp(t_ns), level=level, message=text, name=name)  # type: ignore[arg-type]
             self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
-            self.lines.append(line_of(t_ns, level, name, text))
+            if len(self.lines) < MAX_LINES:
+                self.lines.append(line_of(t_ns, level, name, text))
 
     def discard(self) -> None:
         """Leave no file: nothing has run."""
@@ -157,6 +160,7 @@ class _Pictures:
         self._path = file.known_channel("/path", SceneUpdate)
         self._trail = file.known_channel("/trail", PosesInFrame)
         self._poses: list[bytes] = []
+        self._trail_count, self._trail_stride = 0, 1
         self._next_ns = 0
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
@@ -179,7 +183,7 @@ class _Pictures:
         message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
         self._file.write(self._transforms, t_ns, message)
         if t_ns % TRAIL_STEP_NS < SCENE_PERIOD_NS:
-            self._poses.append(scene.trail_pose(pose))
+            self._add_to_trail(scene.trail_pose(pose))
         if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
             self._draw_trail(t_ns)
         self._draw_path(t_ns)
@@ -187,6 +191,15 @@ class _Pictures:
     def closed(self, t_ns: int) -> None:
         if self._poses:
             self._draw_trail(t_ns)
+
+    def _add_to_trail(self, pose: bytes) -> None:
+        """Keep a pose; of a long run every second one, every fourth, and so on."""
+        if self._trail_count % self._trail_stride == 0:
+            self._poses.append(pose)
+        self._trail_count += 1
+        if len(self._poses) > MAX_TRAIL_POSES:
+            del self._poses[1::2]
+            self._trail_stride *= 2
 
     def _draw_trail(self, t_ns: int) -> None:
         message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])

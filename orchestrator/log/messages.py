@@ -8,13 +8,11 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 from google.protobuf.message import DecodeError
 from numpy.typing import NDArray
 
-from orchestrator.log.line import Line, line_of
+from orchestrator.log.line import MAX_LINES, Line, line_of
 from orchestrator.log.read_log import Handler, scan_log
 from orchestrator.text.errors import BadInput
 
 TOPIC = "/log"
-MAX_LINES = 10_000
-"""More are not shown by any command; the log keeps them."""
 
 
 def read_messages(path: Path) -> list[Line]:

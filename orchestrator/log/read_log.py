@@ -6,16 +6,17 @@ import zlib
 from collections.abc import Callable
 from enum import IntEnum
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata
 from numpy.typing import NDArray
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, Field, StringConstraints, TypeAdapter, ValidationError
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
+from orchestrator.cosim.declared import MAX_DESCRIPTION, MAX_ELEMENTS, MAX_ITEMS, MAX_LETTERS
 from orchestrator.cosim.recording import Recording, recording_of
 from orchestrator.cosim.signal_blocks import SignalBlocks
 from orchestrator.cosim.slave import Array
@@ -82,7 +83,8 @@ def read_log(path: Path) -> Recording:
 
 def no_layout(error: Exception, path: Path) -> BadInput:
     """Return what to raise for a log whose content has no meaning."""
-    return BadInput(f"is not laid out as apa writes it ({type(error).__name__}: {error})", file=path)
+    text = " ".join(str(error).split())[:200]
+    return BadInput(f"is not laid out as apa writes it ({type(error).__name__}: {text})", file=path)
 
 
 def scan_log(path: Path, handler_of: Callable[[Any], Handler | None]) -> dict[str, dict[str, str]]:
@@ -322,20 +324,39 @@ def _checksum(texts: dict[str, str]) -> int:
     return zlib.crc32(json.dumps(texts, sort_keys=True).encode())
 
 
+ShortText = Annotated[str, StringConstraints(max_length=MAX_LETTERS)]
+FmiInteger = Annotated[int, Field(ge=-MOST_WHOLE, lt=MOST_WHOLE)]
+
+
+class LoggedStates(BaseModel):
+    """The names of a mode's values."""
+
+    name: ShortText
+    values: Annotated[dict[ShortText, FmiInteger], Field(max_length=MAX_ITEMS)]
+
+
+class LoggedVariable(BaseModel):
+    """What a log says of a variable."""
+
+    name: ShortText
+    type: Literal["float", "int", "bool"]
+    unit: ShortText
+    text: Annotated[str, StringConstraints(max_length=MAX_DESCRIPTION)]
+    states: LoggedStates | None = None
+
+
+LOGGED = TypeAdapter(Annotated[list[LoggedVariable], Field(max_length=MAX_ELEMENTS)])
+
+
 def from_json(text: str) -> list[Variable]:
-    """Return the variables that a channel's metadata describes (see ``recording.to_json``)."""
+    """Return the variables that a channel's metadata describes (see ``recording.to_json``).
+
+    Raises ``ValueError`` for what has no meaning or no bounds.
+    """
     result = []
-    for row in json.loads(text):
-        states = _enum(row["states"]) if row["states"] else None
-        signal = Signal(row["unit"], row["text"], states=states)
-        result.append(Variable(str(row["name"]), KINDS[row["type"]], signal, KINDS[row["type"]]()))
+    for row in LOGGED.validate_json(text, strict=True):
+        functional: Any = IntEnum
+        states = functional(row.states.name, row.states.values) if row.states is not None else None
+        kind = KINDS[row.type]
+        result.append(Variable(row.name, kind, Signal(row.unit, row.text, states=states), kind()))
     return result
-
-
-def _enum(states: dict[str, Any]) -> type[IntEnum]:
-    """Return the states of a variable; raises ``OverflowError`` if one is no FMI integer."""
-    functional: Any = IntEnum
-    made: type[IntEnum] = functional(states["name"], states["values"])
-    if any(not -MOST_WHOLE <= state < MOST_WHOLE for state in made):
-        raise OverflowError("a state is no 32-bit integer")
-    return made

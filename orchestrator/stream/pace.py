@@ -1,6 +1,7 @@
 """A run held back to the pace of the clock on the wall, and how late it was."""
 
 import time
+from array import array
 from collections.abc import Callable
 from typing import Any
 
@@ -20,7 +21,7 @@ class Pace:
     ) -> None:
         self._clock, self._sleep = clock, sleep
         self._begun = 0.0
-        self._late: list[float] = []
+        self._late = array("d")
 
     def exchanged(self, t_ns: int) -> None:
         """Wait until ``t_ns`` after the first exchange."""
@@ -36,7 +37,7 @@ class Pace:
 
     def told(self) -> dict[str, Any]:
         """Return the lateness of all exchanges: median, 99th percentile, largest, at the end [s], and how many late."""
-        late = np.array(self._late or [0.0])
+        late = np.array(self._late or [0.0], dtype=np.float64)
         median, high = (float(value) for value in np.quantile(late, (0.5, 0.99)))
         return {
             "exchanges": len(self._late),

@@ -17,6 +17,7 @@ from orchestrator.text.console import console, printable_streams
 from orchestrator.text.errors import BadInput
 from orchestrator.text.printable import CONTROL
 from tests.orchestrator import bad_fmus
+from tests.orchestrator.c_fmus import THEIR, c_fmu
 from tests.orchestrator.test_bad_fmus import scenario
 
 FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
@@ -57,6 +58,11 @@ DECLARED = {
     "direction of writing in a unit": ('unit="u"', 'unit="u&#x202e;"'),
     "long unit": ('unit="u"', f'unit="{"u" * 5000}"'),
     "long token": ('instantiationToken="1"', f'instantiationToken="{"1" * 5000}"'),
+    "start beyond 32 bits": (
+        '<Enumeration name="mode" valueReference="2" causality="output"',
+        '<UInt64 name="n" valueReference="9" causality="parameter" variability="fixed" start="5000000000"/>'
+        '<Enumeration name="mode" valueReference="2" causality="output"',
+    ),
     "start in words": ('causality="input" start="0"', f'causality="input" start="{"nothing" * 1000}"'),
 }
 
@@ -99,10 +105,10 @@ def test_what_is_no_answer_of_a_worker_is_not_taken_for_one(answer: bytes) -> No
 def test_a_flood_of_messages_ends_with_a_line_that_says_so(tmp_path: Path) -> None:
     path = scenario(tmp_path, bad_fmus.behaving(tmp_path, "step-flood"))
     assert main(["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "-q", "--no-page"]) in (0, 1)
-    from orchestrator.log import messages
+    from orchestrator.log.line import MAX_LINES
 
     lines = [line for line in read_messages(tmp_path / "out" / "run.mcap") if line.name == "bad"]
-    assert len(lines) <= worker.MAX_MESSAGES <= messages.MAX_LINES
+    assert len(lines) <= worker.MAX_MESSAGES <= MAX_LINES
     assert lines[0].text == "tick"
 
 
@@ -175,3 +181,16 @@ def test_no_control_character_of_a_text_reaches_a_stream(capsys: pytest.CaptureF
     assert not CONTROL.search(out + err)
     assert "a line \\x1b[2J\\u202e of\ttwo\nlines" in out
     assert "a cell \\x9b31m" in out
+
+
+def test_an_integer_that_no_log_can_hold_ends_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = tmp_path / "sensor.c"
+    old = "s->quality = s->samples > 10 ? 3 : 2;"
+    text = (THEIR / "sensor.c").read_text()
+    assert old in text
+    source.write_text(text.replace(old, "s->quality = s->samples > 10 ? (int64_t)1 << 40 : 2;"))
+    fmu = c_fmu(tmp_path / "gps.fmu", source, (THEIR / "sensor.xml").read_text(), "sensor")
+    file = tmp_path / "wide.yaml"
+    file.write_text(f"name: wide\nbase: guo2015-case4\nstop_time: 0.3\nsystem:\n  slaves: {{gps: {fmu}}}\n")
+    assert main(["run", str(file), "--fmus", "none", "--out", str(tmp_path / "out"), "--no-page"]) == 1
+    assert "gps gives 1099511627776 for quality at 0.11 s, beyond 32-bit integers" in capsys.readouterr().out

@@ -19,6 +19,7 @@ from orchestrator.cosim import signal_blocks
 from orchestrator.cosim.recording import Recording, StoredRecording, recording_of
 from orchestrator.cosim.signal_blocks import SignalBlocks
 from orchestrator.drawing.decimation import decimated, deviation
+from orchestrator.log import mcap_log
 from orchestrator.log.mcap_file import McapFile
 from orchestrator.log.mcap_log import add_channel
 from orchestrator.log.protobuf_rows import Encoder
@@ -238,3 +239,16 @@ def test_memory_does_not_grow_with_the_log(command: str, tmp_path: Path) -> None
         long_log(log, rows)
         peaks.append(peak_mb(command, log, tmp_path))
     assert peaks[1] - peaks[0] < GROWTH_MB
+
+
+def test_the_trail_of_a_long_run_has_bounds_and_covers_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mcap_log, "MAX_TRAIL_POSES", 100)
+    pictures = mcap_log._Pictures.__new__(mcap_log._Pictures)
+    pictures._poses, pictures._trail_count, pictures._trail_stride = [], 0, 1
+    for number in range(10_000):
+        pictures._add_to_trail(str(number).encode())
+    numbers = [int(pose) for pose in pictures._poses]
+    assert len(numbers) <= 100
+    assert set(np.diff(numbers)) == {pictures._trail_stride}
+    assert numbers[0] == 0
+    assert numbers[-1] > 10_000 - 2 * pictures._trail_stride

@@ -195,21 +195,20 @@ class _Version(argparse.Action):
 @contextmanager
 def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
     """With ``--quiet`` nothing is printed but errors, and JSON if requested."""
-    from orchestrator.session.trust import POLICY
+    from orchestrator.session.trust import trusting
     from orchestrator.text.console import COMMAND, QUIET
 
     token = QUIET.set(parsed.quiet)
-    policy = POLICY.set("remember" if getattr(parsed, "trust", False) else "ask")
     COMMAND.set(shlex.join(["apa", *parsed.words]))
     try:
-        if parsed.quiet and not getattr(parsed, "json", False):
-            with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
+        with trusting("remember" if getattr(parsed, "trust", False) else "ask"):
+            if parsed.quiet and not getattr(parsed, "json", False):
+                with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
+                    yield
+            else:
                 yield
-        else:
-            yield
     finally:
         QUIET.reset(token)
-        POLICY.reset(policy)
 
 
 def _complain(text: str) -> None:

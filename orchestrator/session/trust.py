@@ -5,16 +5,32 @@ What is named on the command line needs no question, nor does a program that imp
 
 import os
 import sys
-from collections.abc import Iterable
-from contextvars import ContextVar
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from orchestrator.text.console import QUIET, say
 from orchestrator.text.errors import BadInput, shown
 from orchestrator.text.printable import printable
 
-POLICY: ContextVar[str] = ContextVar("trust", default="all")
-"""``all``: nobody is asked; ``ask``: of each new folder; ``remember``: new folders are trusted from now on."""
+
+class _Policy:
+    """Holds in all threads, unlike a context variable: ``apa test -j`` loads scenarios in several."""
+
+    now = "all"
+    """``all``: nobody is asked; ``ask``: of each new folder; ``remember``: new folders are trusted from now on."""
+
+
+@contextmanager
+def trusting(policy: str) -> Iterator[None]:
+    """Let a policy hold: ``ask`` or ``remember``."""
+    before, _Policy.now = _Policy.now, policy
+    try:
+        yield
+    finally:
+        _Policy.now = before
+
+
 VARIABLE = "APA_TRUST"
 """Environment variable that is set to ``all`` where a machine runs trusted files only, as in CI."""
 MAX_NAMES = 3
@@ -27,11 +43,11 @@ def require_trust(origin: Path, code: Iterable[str]) -> None:
     """
     names = list(dict.fromkeys(code))
     folder = origin.resolve().parent
-    if not names or POLICY.get() == "all" or os.environ.get(VARIABLE) == "all" or is_trusted(folder):
+    if not names or _Policy.now == "all" or os.environ.get(VARIABLE) == "all" or is_trusted(folder):
         return
     more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
     listed = ", ".join(shown(name) for name in names[:MAX_NAMES]) + more
-    if POLICY.get() != "remember" and not _agrees(origin, listed, folder):
+    if _Policy.now != "remember" and not _agrees(origin, listed, folder):
         text = f"runs code that comes with it: {listed}; add --trust if you trust {folder} (it is remembered)"
         raise BadInput(text, file=origin)
     _remember(folder)

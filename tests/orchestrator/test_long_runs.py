@@ -32,16 +32,20 @@ from orchestrator.verdict.summary import summarize
 GROWTH_MB = 16.0
 """Memory that a log of four times the length may take besides: caches, the allocator's leftovers, the log's index."""
 RARER = ("report", "compare", "csv")
+FULL_ROWS, FULL_MB = 2_750_000, 400.0
+"""A log of about 411 MB, and what a command may take for it."""
 CHILD = """
 import json, resource, sys
+from orchestrator.cli import main
+code = main(sys.argv[1:])
+print(json.dumps([code, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]))
+"""
+SMALL = """
 from orchestrator.cosim import signal_blocks
 from orchestrator.comparison import traces
 from orchestrator.drawing import decimation
-from orchestrator.cli import main
 signal_blocks.MEMORY_BYTES, signal_blocks.BLOCK_BYTES, traces.SPAN_ROWS = 4 << 20, 1 << 20, 1 << 14
 decimation.MAX_VALUES = 100_000
-code = main(sys.argv[1:])
-print(json.dumps([code, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]))
 """
 SPECIAL = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e-310, 255.0, 256.0, -1.0, 2.0**31, 0.1]
 
@@ -214,15 +218,15 @@ def long_log(path: Path, rows: int) -> None:
     file.close()
 
 
-def peak_mb(command: str, log: Path, folder: Path) -> float:
-    """Return the peak memory of a command that reads a log."""
+def peak_mb(command: str, log: Path, folder: Path, setup: str = SMALL) -> float:
+    """Return the peak memory of a command that reads a log; ``setup`` comes before it."""
     arguments = {
         "check": ["check", str(log), "gbt41630"],
         "report": ["report", str(log), "--out", str(folder / "page.html")],
         "compare": ["compare", str(log), str(log), "--time", "0.05"],
         "csv": ["export", "csv", str(log), "--out", str(folder / "run.csv")],
     }[command]
-    ran = subprocess.run([sys.executable, "-c", CHILD, *arguments], capture_output=True, text=True, check=True)
+    ran = subprocess.run([sys.executable, "-c", setup + CHILD, *arguments], capture_output=True, text=True, check=True)
     code, peak = json.loads(ran.stdout.splitlines()[-1])
     assert code in (0, 1), ran.stderr
     return float(peak)
@@ -239,6 +243,16 @@ def test_memory_does_not_grow_with_the_log(command: str, tmp_path: Path) -> None
         long_log(log, rows)
         peaks.append(peak_mb(command, log, tmp_path))
     assert peaks[1] - peaks[0] < GROWTH_MB
+
+
+@pytest.mark.release
+@pytest.mark.skipif(sys.platform == "win32", reason="peak memory is told by getrusage")
+def test_a_log_of_411_mb_takes_less_memory_than_it_has_bytes(tmp_path: Path) -> None:
+    log = tmp_path / "run.mcap"
+    long_log(log, FULL_ROWS)
+    assert log.stat().st_size > 400e6
+    for command in ("check", "report", "compare"):
+        assert peak_mb(command, log, tmp_path, "") < FULL_MB
 
 
 def test_the_trail_of_a_long_run_has_bounds_and_covers_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.session.trust import VARIABLE, is_trusted
+from orchestrator.session.trust import VARIABLE, is_trusted, trusting
 from orchestrator.sweep.repeat import NEEDED, write_scenario
 from orchestrator.text.errors import BadInput
 
@@ -38,7 +38,7 @@ def received(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 COMMANDS = {
     "run": ["run", "got.yaml"],
-    "test": ["test", "got.yaml"],
+    "test": ["test", "-j", "2", "got.yaml"],
     "step test": ["test", "step.yaml"],
     "sweep": ["sweep", "study.yaml"],
 }
@@ -72,7 +72,6 @@ def test_what_the_command_line_names_needs_no_question(received: Path) -> None:
 def test_a_table_asks_before_its_code_is_imported(received: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The table says of which file its scenario's controller is, by an absolute path."""
     monkeypatch.setenv(VARIABLE, "all")
-    monkeypatch.setattr("orchestrator.session.trust.POLICY", type("Ask", (), {"get": staticmethod(lambda: "ask")}))
     from orchestrator.scenario.load_scenario import load_scenario
 
     scenario = load_scenario(str(received / "got.yaml"), [])
@@ -81,6 +80,6 @@ def test_a_table_asks_before_its_code_is_imported(received: Path, monkeypatch: p
     table = type("Fake", (), {"path": received / "else.parquet", "job": None, "about": {"study": {"name": "x"}}})
     table.chunk = lambda number: None  # type: ignore[attr-defined]
     table.names = lambda: NEEDED  # type: ignore[attr-defined]
-    with pytest.raises(BadInput, match="add --trust"):
+    with trusting("ask"), pytest.raises(BadInput, match="add --trust"):
         write_scenario(table, 0, received.parent / "row.yaml")  # type: ignore[arg-type]
     assert not (received.parent / "ran").exists()

@@ -101,7 +101,7 @@ def show(browser: Any) -> Iterator[Any]:
         seen = Seen(page)
         page.goto(path.as_uri() + fragment)
         if is_scripted:
-            page.wait_for_selector("html[data-ready]", timeout=20_000)
+            page.wait_for_selector("html[data-ready]", timeout=120_000)
         return page, seen
 
     yield opened

@@ -24,6 +24,8 @@ OWN_TESTS = (
     "tests/orchestrator/test_viewer_layouts.py",
 )
 """Those that a recipe could break: the structure, the language of models, systems, bad parameters, limits, layouts."""
+HANGS = 1800.0
+"""A command that takes longer hangs [s]; building FMUs beside much other work takes minutes."""
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.S | re.M)
 
 
@@ -120,7 +122,7 @@ def run_line(copy: Path, words: list[str]) -> tuple[int, str]:
 def run(copy: Path, words: list[str], module: str = "orchestrator") -> tuple[int, str]:
     environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(copy), "COLUMNS": "200"}
     call = [sys.executable, "-m", module, *words]
-    done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True, timeout=HANGS)
     return done.returncode, done.stdout + done.stderr
 
 

@@ -206,9 +206,9 @@ def test_the_door_of_a_live_run_looks_at_the_origin() -> None:
 
     with shown(load_scenario("guo2015-case4", ["stop_time=30"])) as (address, _, _):
         with pytest.raises(InvalidStatus, match="403"):
-            viewer.connect(address, origin="https://evil.example", open_timeout=20)
+            viewer.connect(address, origin="https://evil.example", open_timeout=120)
         with viewer.connect(address, subprotocols=viewer.PROTOCOLS, origin="http://localhost:8080") as socket:
-            assert json.loads(socket.recv(timeout=20))["op"] == "serverInfo"
+            assert json.loads(socket.recv(timeout=120))["op"] == "serverInfo"
 
 
 def test_ctrl_c_ends_in_order(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ MESSAGE, TIME = 1, 2
 
 class Viewer:
     def __init__(self, address: str) -> None:
-        self._context = connect(address, subprotocols=PROTOCOLS, max_size=None, open_timeout=20)
+        self._context = connect(address, subprotocols=PROTOCOLS, max_size=None, open_timeout=120)
         self.socket = self._context.__enter__()
         self.channels: dict[int, dict[str, Any]] = {}
         self.messages: dict[str, list[tuple[int, bytes]]] = defaultdict(list)
@@ -27,7 +27,7 @@ class Viewer:
 
     def take(self) -> None:
         """Take the next frame."""
-        frame = self.socket.recv(timeout=20)
+        frame = self.socket.recv(timeout=120)
         if isinstance(frame, str):
             told = json.loads(frame)
             self.said.append(told)

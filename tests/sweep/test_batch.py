@@ -1,4 +1,7 @@
-"""Rows of the compiled batch against the Python master, run by run, to the last bit."""
+"""Rows of the compiled batch against single runs, to the last bit.
+
+Some of them in Python, most as native FMUs, whose runs have the bits of those in Python (tests/twin).
+"""
 
 import json
 from pathlib import Path
@@ -43,9 +46,9 @@ WINDOWED = [
 ]
 
 
-def assert_same(job: Any, chunk: Any, rows: Any, number: Any, files: Any = None, kind: str = "none") -> None:
+def assert_same(job: Any, chunk: Any, rows: Any, number: Any, kind: str = "native") -> None:
     scenario = chunk_scenario(job, chunk, number)
-    ran = run_scenario(scenario, files, kind=kind)
+    ran = run_scenario(scenario, fmu_files(kind) if kind != "none" else None, kind=kind)
     np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.measures))
     summary = summarize(ran.recording, scenario, 1.0)
     verdict = judge(job, truths(job, chunk), rows)
@@ -61,7 +64,7 @@ def test_rows_equal_the_python_master(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     rows = run_batch(job, chunk)
     for number in some(len(rows), 12):
-        assert_same(job, chunk, rows, number)
+        assert_same(job, chunk, rows, number, "none")
     assert len(set(judge(job, truths(job, chunk), rows).reason)) > 3
 
 
@@ -69,9 +72,8 @@ def test_rows_equal_the_python_master(bind: Any, some: Any) -> None:
 def test_rows_equal_fmu_runs(bind: Any, some: Any, kind: str) -> None:
     _, _, job, chunk = bind()
     rows = run_batch(job, chunk)
-    files = fmu_files(kind)
     for number in some(len(rows), 6, seed=7):
-        assert_same(job, chunk, rows, number, files, kind)
+        assert_same(job, chunk, rows, number, kind)
 
 
 def test_rows_do_not_depend_on_their_neighbours(bind: Any) -> None:

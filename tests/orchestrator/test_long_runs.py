@@ -165,6 +165,24 @@ def test_an_exported_table_is_the_same(
     assert texts[0].count("\n") == parked[0].count + 2
 
 
+def test_an_mdf_file_of_a_long_run_is_the_same(
+    parked: tuple[Recording, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asammdf = pytest.importorskip("asammdf")
+    found = []
+    for number, size in enumerate((64 << 20, 1 << 14)):
+        monkeypatch.setattr(signal_blocks, "MEMORY_BYTES", size)
+        monkeypatch.setattr(signal_blocks, "BLOCK_BYTES", 1 << 14)
+        out = tmp_path / f"{number}.mf4"
+        words = ["--signals", "vehicle.pose.*", "--signals", "controller.phase", "--out", str(out)]
+        assert main(["export", "mf4", str(parked[1]), *words]) == 0
+        with asammdf.MDF(out) as file:
+            names = ("vehicle.pose.x", "vehicle.pose.heading", "controller.phase")
+            found.append([(file.get(name).samples.tolist(), file.get(name).timestamps.tolist()) for name in names])
+    assert found[0] == found[1]
+    assert len(found[0][0][0]) == parked[0].count
+
+
 def test_a_page_keeps_changes_and_extremes_of_a_long_run(
     parked: tuple[Recording, Path], stored: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

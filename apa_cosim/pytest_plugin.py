@@ -1,12 +1,13 @@
 """A pytest plugin: step tests in ``test_*.yaml`` are tests, and three fixtures drive what is under test.
 
     def test_parks(closed_loop):
-        closed_loop("guo2015-case4", {"vehicle.body": "double_track"}).must_be("parked").must_meet("gbt41630")
+        run = closed_loop("guo2015-case4", {"vehicle.body": "double_track"})
+        run.assert_outcome("parked").assert_requirements("gbt41630")
 
     def test_steering(vehicle):
         step = {"step": {"at": 1.0, "to": 3.14}}
         run = vehicle({"steering_active": True, "steering_wheel_request": step}, stop_time=3.0)
-        run.must_meet({"id": "rises", "signal": "steering_wheel_angle",
+        run.assert_requirements({"id": "rises", "signal": "steering_wheel_angle",
                        "response": {"rise_time": {"max": 0.5}, "to": 3.14, "at": 1.0}})
 
 ``--apa-controller their.fmu``, ``--apa-vehicle``: FMUs of others in the place of ours; ``--apa-fmus``: which of ours.
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from apa_cosim.testing import AloneRun, ClosedLoopRun
+    from apa_cosim.testing import ClosedLoopRun, OpenLoopRun
 
     Changes = Mapping[str, object]
 
@@ -92,16 +93,16 @@ def closed_loop(request: pytest.FixtureRequest) -> "Callable[..., ClosedLoopRun]
 
 
 @pytest.fixture
-def controller(request: pytest.FixtureRequest) -> "Callable[..., AloneRun]":
-    """A function that drives the controller alone: ``controller(inputs, stop_time=.., parameters=.., step=..)``."""
-    from apa_cosim.testing import alone_of
+def controller(request: pytest.FixtureRequest) -> "Callable[..., OpenLoopRun]":
+    """A function that runs the controller in open loop: ``controller(inputs, stop_time=.., parameters=..)``."""
+    from apa_cosim.testing import open_loop_of
 
-    return alone_of("controller", request.config)
+    return open_loop_of("controller", request.config)
 
 
 @pytest.fixture
-def vehicle(request: pytest.FixtureRequest) -> "Callable[..., AloneRun]":
-    """A function that drives the vehicle alone: ``vehicle(inputs, stop_time=.., parameters=.., step=..)``."""
-    from apa_cosim.testing import alone_of
+def vehicle(request: pytest.FixtureRequest) -> "Callable[..., OpenLoopRun]":
+    """A function that runs the vehicle in open loop: ``vehicle(inputs, stop_time=.., parameters=.., step=..)``."""
+    from apa_cosim.testing import open_loop_of
 
-    return alone_of("vehicle", request.config)
+    return open_loop_of("vehicle", request.config)

@@ -18,16 +18,26 @@ from orchestrator.steptest.drive import drive
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, load_step_test
 from orchestrator.steptest.verdict import judged
+from orchestrator.text.renamed_names import API
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import sentence
 
 Same = TypeVar("Same", bound="ClosedLoopRun")
 
 
-class ClosedLoopRun(Run):
-    """A run of a scenario that can be asked to be as it should."""
+def old_method(owner: str, name: str) -> AttributeError:
+    """Return the error of a method that ``owner`` does not have, with its new name where it had one before."""
+    now = API.get(name)
+    return AttributeError(f"{owner} has no attribute {name!r}" + (f"; it is called {now} now" if now else ""))
 
-    def must_be(self: Same, outcome: str) -> Same:
+
+class ClosedLoopRun(Run):
+    """A run of a scenario with assertions on its outcome and on requirements."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise old_method("ClosedLoopRun", name)
+
+    def assert_outcome(self: Same, outcome: str) -> Same:
         """Return the run; fails if it came out otherwise, with why."""
         __tracebackhide__ = True
         assert self.outcome == outcome, (
@@ -35,15 +45,15 @@ class ClosedLoopRun(Run):
         )
         return self
 
-    def must_meet(self: Same, *requirements: str | Path | Requirement | Mapping[str, Any]) -> Same:
+    def assert_requirements(self: Same, *requirements: str | Path | Requirement | Mapping[str, Any]) -> Same:
         """Return the run; fails if it misses a requirement, with signal, time, value, limit and margin."""
         __tracebackhide__ = True
         assert_met(judge(self, *requirements))
         return self
 
 
-class AloneRun:
-    """One model driven alone: ``run["steering_wheel_angle"]`` over ``run.t``, inputs and outputs by their own names."""
+class OpenLoopRun:
+    """Open-loop run of one model: ``run["steering_wheel_angle"]`` over ``run.t``; names without owner."""
 
     def __init__(self, test: StepTest, recording: Recording) -> None:
         self._test = test
@@ -58,7 +68,10 @@ class AloneRun:
     def __getitem__(self, name: str) -> Array:
         return self.recording.signals[f"{self._owner}.{name}"]
 
-    def must_meet(self, *expectations: Mapping[str, Any]) -> "AloneRun":
+    def __getattr__(self, name: str) -> Any:
+        raise old_method("OpenLoopRun", name)
+
+    def assert_requirements(self, *expectations: Mapping[str, Any]) -> "OpenLoopRun":
         """Return the run; fails if it misses one of ``expectations``, written as in a step test's ``expect``."""
         __tracebackhide__ = True
         test = StepTest.model_validate({**self._test.model_dump(), "expect": [dict(item) for item in expectations]})
@@ -84,18 +97,18 @@ def closed_loop_of(config: pytest.Config) -> Callable[..., ClosedLoopRun]:
     return closed_loop
 
 
-def alone_of(model: str, config: pytest.Config) -> Callable[..., AloneRun]:
+def open_loop_of(model: str, config: pytest.Config) -> Callable[..., OpenLoopRun]:
     """Return the function behind the fixtures ``controller`` and ``vehicle``."""
     kind, foreign = _kind(config), _foreign(config)
 
-    def alone(
+    def open_loop(
         inputs: Mapping[str, object],
         *,
         stop_time: float,
         parameters: Mapping[str, object] | None = None,
         step: float = 0.01,
         contact_allowed: bool = False,
-    ) -> AloneRun:
+    ) -> OpenLoopRun:
         test = StepTest(
             name=model,
             model=model,
@@ -106,9 +119,9 @@ def alone_of(model: str, config: pytest.Config) -> Callable[..., AloneRun]:
             parameters=dict(parameters or {}),
             file=Path("test"),
         )
-        return AloneRun(test, drive(test, kind, foreign))
+        return OpenLoopRun(test, drive(test, kind, foreign))
 
-    return alone
+    return open_loop
 
 
 def step_test_checks(path: Path, config: pytest.Config) -> list[Check]:

@@ -31,7 +31,7 @@ def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any])
         elif isinstance(item, Mapping):
             asked.append(_requirement(item))
         else:
-            asked += read_requirements(find_file(str(item), "limits", "set of limits", Path.cwd()))
+            asked += read_requirements(find_file(str(item), "requirements", "set of requirements", Path.cwd()))
     asked.append(run.scenario.contact_rule)
     return judge_recording(asked, run.recording, facts_of(run.recording, run.scenario), "judge")
 

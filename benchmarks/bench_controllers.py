@@ -26,7 +26,7 @@ from benchmarks.results import record, size
 from controller_fmu import MODEL
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
-from controller_fmu.zhang2022.qp import STAGES, solve
+from controller_fmu.zhang2022.qp import MAX_STAGES, solve
 from fmus.native.kept import kept_library
 from fmus.native.libraries import memory_size, model_files, typed
 from modelkit.variables import flatten, variables, with_values
@@ -69,7 +69,7 @@ def scenarios() -> dict[str, Scenario]:
 def seen_by_controller(scenario: Scenario) -> list[Any]:
     """Return what the controller is given in a closed loop, step by step, until the manoeuvre is over."""
     recording = run_scenario(scenario).recording
-    final = np.isin(recording.signals[scenario.ending.signal], scenario.ending.final())
+    final = np.isin(recording.signals[scenario.stop_condition.signal], scenario.stop_condition.final())
     over = int(np.argmax(final)) if final.any() else len(final)
     return inputs_seen(recording, "controller", MODEL)[:over]
 
@@ -217,7 +217,7 @@ def bench_qp(library: Any) -> None:
 
     def by_cvxpy() -> None:
         for h, f, g, limit in matrices:
-            x = cvxpy.Variable(2 * STAGES)
+            x = cvxpy.Variable(2 * MAX_STAGES)
             cost = 0.5 * cvxpy.quad_form(x, cvxpy.psd_wrap(h)) + f @ x
             cvxpy.Problem(cvxpy.Minimize(cost), [g @ x <= limit]).solve(solver=cvxpy.OSQP, eps_abs=1e-6, eps_rel=1e-6)
 

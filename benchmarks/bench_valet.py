@@ -34,7 +34,7 @@ ERRORS = (
     "vehicle.steering.lag=50 ms",
     "vehicle.steering.backlash=0.03",
     "vehicle.drive.brake_lag=80 ms",
-    "vehicle.odometry={perfect: false, radius_error: 0.001, steering_offset: 0.0002, tick: 0.01}",
+    "vehicle.odometry={ideal: false, radius_error: 0.001, steering_offset: 0.0002, tick: 0.01}",
 )
 HEAD = "| case | samples | planned in | slowest sample | steps | margin | length | cusps | driven in | clearance |"
 
@@ -70,7 +70,7 @@ def driven(scenario: Any, files: Any) -> Any:
     signals = ran.recording.signals
     poses = np.column_stack([signals[f"vehicle.pose.{axis}"] for axis in ("x", "y", "heading")])
     car = CarOutline.of(described(scenario, ran.recording.parameters_of("vehicle")))
-    clear = np.nanmin([*polygon_clearances(poses, scenario.polygons, car), signals["vehicle.clearance"].min()])
+    clear = np.nanmin([*polygon_clearances(poses, scenario.obstacles, car), signals["vehicle.clearance"].min()])
     speed = signals["controller.speed_request"]
     signs = np.sign(speed[speed != 0.0])
     cusps = int((signs[1:] != signs[:-1]).sum())

@@ -110,7 +110,7 @@ class _Reader:
         return self.power(found)
 
     def power(self, base: str) -> str:
-        """``base`` to the power that follows, if one does."""
+        """``extends`` to the power that follows, if one does."""
         if self.text != "^":
             return base
         self.next()

@@ -232,11 +232,11 @@ def subcommands(top: CommandParser, prefix: str = "") -> Iterator[tuple[str, Com
 def scenarios_page() -> str:
     """Return the shipped scenarios, cars, sets of limits, and the factors of the studies that disturb everything."""
     shipped = [load_scenario(name) for name in scenario_names()]
-    rows = [[f"`{item.name}`", item.title, item.expect.replace("_", " "), item.source] for item in shipped]
+    rows = [[f"`{item.name}`", item.title, item.expected_outcome.replace("_", " "), item.source] for item in shipped]
     parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "what happens", "expected", "source"], rows)]
     cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
-    for path in sorted((ROOM / "limits").glob("*.yaml")):
+    for path in sorted((ROOM / "requirements").glob("*.yaml")):
         rows = [[item.id, f"`{item.signal}`", required_text(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
     for name, factors in {"apa-world": APA_WORLD, "parking-world": PARKING_WORLD}.items():
@@ -290,7 +290,7 @@ def about(model: type[BaseModel]) -> str:
 
 def key_rows(model: type[BaseModel]) -> list[list[str]]:
     """Return (key, type, default, meaning) of what may be written in a file."""
-    texts, unwritten = texts_of(model), ("file", "changed", "left_out") if model is Scenario else ()
+    texts, unwritten = texts_of(model), ("file", "changed", "unsupported_parameters") if model is Scenario else ()
     rows = []
     for name, item in model.model_json_schema()["properties"].items():
         if name in unwritten:

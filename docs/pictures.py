@@ -24,7 +24,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.obeys_slow_down=true"]
+GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.complies_with_slow_down=true"]
 
 
 def main() -> None:

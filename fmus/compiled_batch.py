@@ -27,7 +27,7 @@ FIRST_KEPT = 2
 Doubles = NDArray[np.float64]
 Rows = Callable[[Doubles, NDArray[np.int64], Doubles, Doubles], None]
 """``rows(parameters, times, faults, out)``: one run for each line of the arrays; see :func:`compiled_rows`."""
-FAULTS = ("override", "freeze", "drop", "delay", "noise")
+FAULTS = ("override", "stuck_at_last", "dropout", "delay", "noise")
 FAULT_NUMBERS = 4
 """Of each fault of a run: start [ns], stop [ns], amount, seed. The amount is what its kind needs: the value, nothing,
 the probability, the age [ns], the standard deviation."""

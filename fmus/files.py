@@ -23,7 +23,7 @@ ROOM = "apa-tmp-"
 """How the names of folders for a while begin."""
 NEW = "apa-new-"
 """How they begin until their lock is held: what is called ``ROOM`` and not locked is nobody's."""
-YOUNG = 60.0
+MIN_STALE_AGE = 60.0
 """A folder called ``NEW`` is left alone so long [s]."""
 PLAIN = re.compile(r"[A-Za-z0-9_./\\:~-]+")
 """Paths that every FMU can be unpacked to: PythonFMU crashes on others."""
@@ -179,7 +179,7 @@ def _remove_forsaken(parent: Path) -> None:
     for folder in (*parent.glob(f"{ROOM}*"), *parent.glob(f"{NEW}*")):
         with suppress(OSError):
             state = folder.lstat()
-            is_made = folder.name.startswith(ROOM) or time.time() - state.st_ctime > YOUNG
+            is_made = folder.name.startswith(ROOM) or time.time() - state.st_ctime > MIN_STALE_AGE
             if is_made and not folder.is_symlink() and state.st_uid == os.getuid():
                 handle = hold(folder)
                 remove_folder(folder)

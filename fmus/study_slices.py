@@ -8,7 +8,7 @@ from fmus.compiler import live_inputs
 from fmus.compiler.slicing import Slice
 from fmus.locks import kept_file
 from fmus.native.made_of import ROOT, hash_of, words_of
-from fmus.native.sources import KEPT, own_packages
+from fmus.native.sources import CACHED_TRANSLATIONS, own_packages
 from fmus.places import CACHE
 from modelkit.connections import Wire, connections, part_of
 from modelkit.model import Model
@@ -43,7 +43,7 @@ def study_slices(
         found = _solve(models, used, choices)
         return json.dumps({name: sorted(item.outputs) for name, item in found.items()}).encode()
 
-    kept = json.loads(kept_file(CACHE, "slices", key, ".slices.json", made, KEPT).read_bytes())
+    kept = json.loads(kept_file(CACHE, "slices", key, ".slices.json", made, CACHED_TRANSLATIONS).read_bytes())
     return {name: Slice(frozenset(outputs), choices.get(name)) for name, outputs in kept.items()}
 
 

@@ -1,6 +1,6 @@
 """Oriented boxes in the plane: a car's outline, obstacles, kerbs (a box of no width); gaps, rays, cones.
 
-A distance that does not exist is ``FAR``. Boxes touch when their gap is 0; they overlap when
+A distance that does not exist is ``NO_HIT``. Boxes touch when their gap is 0; they overlap when
 their insides share a point.
 """
 
@@ -11,7 +11,7 @@ from modelkit.maths import clamp
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
-FAR = 1e9
+NO_HIT = 1e9
 """A distance [m] at which there is nothing."""
 
 
@@ -170,7 +170,7 @@ def reach(box: Box) -> float:
 
 
 def ray_box(start: Point, direction: float, box: Box) -> float:
-    """Return the distance [m] along the ray of angle ``direction`` [rad] to ``box``; 0 from inside, or ``FAR``."""
+    """Return the distance [m] along the ray of angle ``direction`` [rad] to ``box``; 0 from inside, or ``NO_HIT``."""
     cos = math.cos(box.heading)
     sin = math.sin(box.heading)
     dx = start.x - box.x
@@ -181,7 +181,7 @@ def ray_box(start: Point, direction: float, box: Box) -> float:
     enter = first.x if first.x > second.x else second.x
     leave = first.y if first.y < second.y else second.y
     if enter > leave or leave < 0.0:
-        return FAR
+        return NO_HIT
     return enter if enter > 0.0 else 0.0
 
 
@@ -200,7 +200,7 @@ def cone_of(start: Point, direction: float, half_angle: float) -> Cone:
 
 
 def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> float:
-    """Return the distance [m] from ``start`` to the part of ``box`` inside a cone; 0 from inside the box, or ``FAR``.
+    """Return the distance [m] from ``start`` to the part of ``box`` inside a cone; 0 inside the box, or ``NO_HIT``.
 
     The cone opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad].
     """
@@ -209,7 +209,7 @@ def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> flo
 
 
 def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
-    """Return the distance [m] to the part of a box, with the corners ``around``, inside a cone, else ``FAR``."""
+    """Return the distance [m] to the part of a box, with the corners ``around``, inside a cone, else ``NO_HIT``."""
     if point_to_oriented(cone.start, a) == 0.0:
         return 0.0
     front_left = _seen_from(around.front_left, cone)
@@ -223,7 +223,7 @@ def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
 
 
 def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Point) -> float:
-    """Return the distance [m] to the part of the line a-b inside a cone, or ``FAR``; see ``cone_box``."""
+    """Return the distance [m] to the part of the line a-b inside a cone, or ``NO_HIT``; see ``cone_box``."""
     cone = cone_of(start, direction, half_angle)
     return _side_in_cone(_seen_from(a, cone), _seen_from(b, cone), cone.side)
 
@@ -246,7 +246,7 @@ def _corners_gap(around: Corners, a: OrientedBox) -> float:
 def _slab(offset: float, rate: float, half: float) -> Point:
     """Return where a ray enters and leaves the strip |offset + t rate| <= half, as (t, t)."""
     if abs(rate) < 1e-12:
-        return Point(-FAR, FAR) if abs(offset) <= half else Point(FAR, -FAR)
+        return Point(-NO_HIT, NO_HIT) if abs(offset) <= half else Point(NO_HIT, -NO_HIT)
     one = (-half - offset) / rate
     other = (half - offset) / rate
     return Point(one, other) if one < other else Point(other, one)
@@ -259,13 +259,13 @@ def _seen_from(point: Point, cone: Cone) -> Point:
 
 
 def _side_in_cone(a: Point, b: Point, side: Point) -> float:
-    """Return the distance from the origin to the part of the line a-b with |y| cos <= x sin, or ``FAR``."""
+    """Return the distance from the origin to the part of the line a-b with |y| cos <= x sin, or ``NO_HIT``."""
     left = _cut(a.x * side.x - a.y * side.y, b.x * side.x - b.y * side.y)
     right = _cut(a.x * side.x + a.y * side.y, b.x * side.x + b.y * side.y)
     low = left.x if left.x > right.x else right.x
     high = left.y if left.y < right.y else right.y
     if low > high:
-        return FAR
+        return NO_HIT
     dx = b.x - a.x
     dy = b.y - a.y
     square = dx * dx + dy * dy

@@ -9,12 +9,12 @@ import math
 
 from modelkit.maths import TWO_PI
 
-MASK = 0xFFFFFFFF
+UINT32_MASK = 0xFFFFFFFF
 
 
 def seed_state(seed: int) -> int:
     """Return a non-zero generator state for any integer ``seed``, well mixed by 16 rounds."""
-    state = (seed ^ 0x6A09E667) & MASK
+    state = (seed ^ 0x6A09E667) & UINT32_MASK
     if state == 0:
         state = 0x3C6EF372
     for _ in range(16):
@@ -24,9 +24,9 @@ def seed_state(seed: int) -> int:
 
 def next_state(state: int) -> int:
     """Return the next generator state, in [1, 2^32 - 1]."""
-    state = state ^ ((state << 13) & MASK)
+    state = state ^ ((state << 13) & UINT32_MASK)
     state = state ^ (state >> 17)
-    return state ^ ((state << 5) & MASK)
+    return state ^ ((state << 5) & UINT32_MASK)
 
 
 def uniform(state: int) -> tuple[int, float]:

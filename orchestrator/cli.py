@@ -57,7 +57,7 @@ def _program() -> int:
     except (Exception, KeyboardInterrupt) as error:
         if _is_scarce(error):
             return _last_words("this takes more memory, files or threads than there are", BAD_INPUT)
-        return _last_words(f"internal error, nothing was judged: {type(error).__name__}: {error}", INTERNAL_ERROR)
+        return _last_words(f"internal error, no verdict: {type(error).__name__}: {error}", INTERNAL_ERROR)
     finally:
         gc.freeze()
 

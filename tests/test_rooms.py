@@ -42,7 +42,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.suite", "orchestrator.coverage"),
     ("orchestrator.catalogue",),
     ("orchestrator.sweep",),
-    ("orchestrator.hunt",),
+    ("orchestrator.falsification",),
     ("orchestrator.live",),
     ("orchestrator.export",),
     ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),

@@ -116,7 +116,7 @@ def test_a_controller_of_ones_own_and_a_study_from_the_wheel(full: Path, tmp_pat
         ["run", "my_controller/scenario.yaml"],
         ["test", "my_controller/scenario.yaml", "my_controller/test_steps.yaml", "guo2015-case4"],
         ["run", "guo2015-case4"],
-        ["sweep", "guo2015-trial", "--every", "1000", "--out", "study"],
+        ["sweep", "guo2015-trial", "--stride", "1000", "--out", "study"],
     ):
         done = call(full, tmp_path, *words)
         assert done.returncode == 0, (words, done.stdout, done.stderr)

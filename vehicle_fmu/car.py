@@ -10,9 +10,9 @@ from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
 from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, geared_speed, obey, press, shift, wanted_gear
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.interface import Body, DriverParams, PersonInput, VehicleInput, VehicleParams
+from vehicle_fmu.interface import Body, DriverParams, ManualInput, VehicleInput, VehicleParams
+from vehicle_fmu.manual_driving import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.odometry import OdometryState, reckon
-from vehicle_fmu.person import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
 
 
@@ -56,11 +56,11 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     wanted = wanted_gear(state.selector.gear, target)
     treads = free and has_pedals(inputs)
     if treads:
-        wanted = lever_gear(inputs.person, state.selector.gear, state.speed)
+        wanted = lever_gear(inputs.manual, state.selector.gear, state.speed)
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
     wheel = state.steering_wheel_angle
-    if state.time_ns * 1e-9 < params.steering.stuck_time:
+    if state.time_ns * 1e-9 < params.steering.fault_time:
         wheel = turn_steering_wheel(
             wheel, steering.lagged, params.car.steering, params.steering.standstill_rate, h, state.speed
         )
@@ -69,11 +69,11 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)
     speed, rolled_speed = state.speed, state.rolled_speed
     if treads:
-        state = _tread(state, inputs.person, angles, params, h)
+        state = _tread(state, inputs.manual, angles, params, h)
     else:
         state = _go(state, inputs, geared_speed(selector, target), angles, params, h)
     odometry = OdometryState(state.pose)
-    if not params.odometry.perfect:
+    if not params.odometry.ideal:
         way = 0.5 * h * (rolled_speed + state.rolled_speed)
         odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.car.wheelbase, params.odometry)
     driven = inputs.speed_control_active or inputs.force_control_active
@@ -91,7 +91,7 @@ def _steer(state: CarState, inputs: VehicleInput, released: bool, params: Vehicl
     """Return the steering with the request of whoever holds the wheel: driver, controller or nobody."""
     steering = state.steering
     if grabs(state.time_ns, params.driver):
-        return hold_request(params.driver.grab_angle, steering.play)
+        return hold_request(params.driver.steering_override_angle, steering.play)
     if inputs.steering_active and not released:
         return pass_request(steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
     return hold_request(state.steering_wheel_angle, steering.play)
@@ -120,10 +120,10 @@ def _go(
 
 
 def _tread(
-    state: CarState, person: PersonInput, angles: tuple[float, float], params: VehicleParams, h: float
+    state: CarState, manual: ManualInput, angles: tuple[float, float], params: VehicleParams, h: float
 ) -> CarState:
     """Return the car ``h`` [s] later under a person's feet."""
-    pedals = tread(state.pedals, person, Rolling(state.speed, state.selector.gear), params.drive, h)
+    pedals = tread(state.pedals, manual, Rolling(state.speed, state.selector.gear), params.drive, h)
     if params.body != Body.KINEMATIC:
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
@@ -161,6 +161,6 @@ def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, pa
 def _brake_pedal(time_ns: int, driver: DriverState, driven: bool, inputs: VehicleInput, params: DriverParams) -> float:
     if brakes(time_ns, params) or driver.takeover:
         return 1.0
-    if inputs.person.drives:
-        return clamp(inputs.person.brake, 0.0, 1.0)
+    if inputs.manual.active:
+        return clamp(inputs.manual.brake, 0.0, 1.0)
     return 1.0 if driver.direction == 0 and not driven else 0.0

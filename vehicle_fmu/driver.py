@@ -49,12 +49,14 @@ def wanted_speed(
     """
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
     setting_out = state.heeded in (Prompt.FORWARD, Prompt.REVERSE) and advised_speed > 0.0
-    if params.obeys_slow_down and (state.heeded == Prompt.SLOW_DOWN or setting_out) and advised_speed < speed:
+    if params.complies_with_slow_down and (state.heeded == Prompt.SLOW_DOWN or setting_out) and advised_speed < speed:
         speed = advised_speed
     if params.speed_error != 0.0:
         speed = speed * (1.0 + params.speed_error)
-    if params.wobble > 0.0 and speed > 0.0:
-        speed = speed + params.wobble * math.sin(TWO_PI * time_ns * 1e-9 / params.wobble_period)
+    if params.speed_oscillation_amplitude > 0.0 and speed > 0.0:
+        speed = speed + params.speed_oscillation_amplitude * math.sin(
+            TWO_PI * time_ns * 1e-9 / params.speed_oscillation_period
+        )
         speed = max(0.0, speed)
     return state.direction * speed
 
@@ -66,7 +68,7 @@ def brakes(time_ns: int, params: DriverParams) -> bool:
 
 def grabs(time_ns: int, params: DriverParams) -> bool:
     """Return whether the driver turns the wheel against the controller."""
-    return time_ns * 1e-9 >= params.grab_time
+    return time_ns * 1e-9 >= params.steering_override_time
 
 
 def switch_is_on(time_ns: int, params: DriverParams) -> bool:
@@ -91,8 +93,8 @@ def profile_speed(params: DriverParams, at: float) -> float:
 
 
 def _direction(direction: int, heeded: int, params: DriverParams) -> int:
-    if heeded == Prompt.STOP and params.obeys_stop:
+    if heeded == Prompt.STOP and params.complies_with_stop:
         return 0
-    if heeded in (Prompt.FORWARD, Prompt.REVERSE) and (direction == 0 or params.obeys_direction):
+    if heeded in (Prompt.FORWARD, Prompt.REVERSE) and (direction == 0 or params.complies_with_direction):
         return 1 if heeded == Prompt.FORWARD else -1
     return direction

@@ -17,12 +17,12 @@ from vehicle_fmu.drive import change_speed
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import DriveParams
 
-STANDSTILL = 0.02
+SELECTOR_SPEED = 0.02
 """Speed [m/s] below which the selector may be moved."""
 NO_GEAR = -1
 LAST_DECELERATION = 0.5
 """Deceleration [m/s2] with which a car comes to rest, so that it rocks little on its tyres."""
-FIRMER = 4.0
+BRAKE_GROWTH = 4.0
 """Growth [m/s3] of that if it does not come to rest, as on a slope."""
 
 
@@ -72,7 +72,7 @@ def shift(selector: Selector, wanted: int, speed: float, shift_time: float, step
     if selector.wanted != NO_GEAR:
         left = selector.left_ns - step_ns
         return Selector(selector.wanted) if left <= 0 else Selector(Gear.NEUTRAL, selector.wanted, left)
-    if wanted == gear or abs(speed) >= STANDSTILL:
+    if wanted == gear or abs(speed) >= SELECTOR_SPEED:
         return Selector(gear)
     return Selector(Gear.NEUTRAL, wanted, int(shift_time * 1e9))
 
@@ -124,9 +124,9 @@ def _split(effort: Effort, force: float, idle: float, ahead: float, p: DrivePara
 
 def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
     """Return how hard to brake [m/s2] at the end of a stop: gently while it still rolls, then to hold."""
-    if abs(speed) < STANDSTILL:
+    if abs(speed) < SELECTOR_SPEED:
         return p.hold_deceleration
-    gentle = LAST_DECELERATION + FIRMER * time + p.speed_gain * abs(speed)
+    gentle = LAST_DECELERATION + BRAKE_GROWTH * time + p.speed_gain * abs(speed)
     return min(p.hold_deceleration, gentle)
 
 

@@ -35,7 +35,7 @@ from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 HOUSE = "project default; the source states none"
-NEVER = 1e9
+NEVER_VALUE = 1e9
 """A time or distance that is not reached (FMI 2.0 has no portable infinity)."""
 
 
@@ -50,10 +50,10 @@ class Body(IntEnum):
     """Four wheels, Magic Formula, load transfer."""
 
 
-class PersonInput(NamedTuple):
+class ManualInput(NamedTuple):
     """A person at pedals and lever in place of the driver modelled: in a driving simulator, or a page."""
 
-    drives: Annotated[bool, Signal("1", "manual driving: pedals and lever replace the driver model")] = False
+    active: Annotated[bool, Signal("1", "manual driving: pedals and lever replace the driver model")] = False
     accelerator: Annotated[float, Signal("1", "accelerator pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     brake: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     lever: Annotated[int, Signal("1", "selector lever; the gear follows it at standstill", states=Gear)] = Gear.PARK
@@ -72,7 +72,7 @@ class VehicleInput(NamedTuple):
     force_control_active: ForceControlActive = False
     force_request: ForceRequest = 0.0
     brake_request: BrakeRequest = False
-    person: PersonInput = PersonInput()
+    manual: ManualInput = ManualInput()
 
 
 class VehicleOutput(NamedTuple):
@@ -98,7 +98,7 @@ class VehicleOutput(NamedTuple):
             "m",
             "clearance between outline and nearest obstacle; in contact minus the penetration depth; 1e9: no obstacle",
         ),
-    ] = NEVER
+    ] = NEVER_VALUE
     contact: Annotated[bool, Signal("1", "the outline touches an obstacle")] = False
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
@@ -115,7 +115,7 @@ class SteeringParams(NamedTuple):
         Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE),
         Role.TUNABLE,
     ] = 0.0
-    stuck_time: Annotated[float, Signal("s", "actuator stuck from this time on; 1e9: never", 0.0, 1e9, HOUSE)] = 1e9
+    fault_time: Annotated[float, Signal("s", "actuator stuck from this time on; 1e9: never", 0.0, 1e9, HOUSE)] = 1e9
 
 
 class DriveParams(NamedTuple):
@@ -150,8 +150,9 @@ class ProfilePoint(NamedTuple):
     """One corner of the driver's speed profile."""
 
     at: Annotated[
-        float, Signal("1", "time [s] or driven distance [m] from which the speed applies; 1e9: unused", 0.0, NEVER)
-    ] = NEVER
+        float,
+        Signal("1", "time [s] or driven distance [m] from which the speed applies; 1e9: unused", 0.0, NEVER_VALUE),
+    ] = NEVER_VALUE
     speed: Annotated[float, Signal("m/s", "target speed of the driver, >= 0", 0.0, 50.0)] = 0.0
 
 
@@ -161,25 +162,33 @@ class DriverParams(NamedTuple):
     profile: Annotated[tuple[ProfilePoint, ...], Role.FIXED] = (ProfilePoint(0.0, 0.5),) + (ProfilePoint(),) * 7
     profile_over_distance: Annotated[bool, Signal("1", "profile points are distances, not times"), Role.FIXED] = False
     reaction_delay: Annotated[float, Signal("s", "reaction time to a prompt", 0.0, 10.0, HOUSE)] = 0.3
-    obeys_stop: Annotated[bool, Signal("1", "stops when prompted")] = True
-    obeys_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
-    obeys_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
-    takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0, NEVER)] = NEVER
-    brake_time: Annotated[float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0, NEVER)] = NEVER
-    grab_time: Annotated[
-        float, Signal("s", "overrides the steering wheel from this time on; 1e9: never", 0.0, NEVER)
-    ] = NEVER
-    grab_angle: Annotated[float, Signal("rad", "steering-wheel angle held by the override", -20.0, 20.0)] = 0.0
+    complies_with_stop: Annotated[bool, Signal("1", "stops when prompted")] = True
+    complies_with_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
+    complies_with_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
+    takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0, NEVER_VALUE)] = NEVER_VALUE
+    brake_time: Annotated[
+        float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0, NEVER_VALUE)
+    ] = NEVER_VALUE
+    steering_override_time: Annotated[
+        float, Signal("s", "overrides the steering wheel from this time on; 1e9: never", 0.0, NEVER_VALUE)
+    ] = NEVER_VALUE
+    steering_override_angle: Annotated[
+        float, Signal("rad", "steering-wheel angle held by the override", -20.0, 20.0)
+    ] = 0.0
     speed_error: Annotated[float, Signal("1", "relative speed error of the driver", -1.0, 5.0)] = 0.0
-    wobble: Annotated[float, Signal("m/s", "amplitude of the speed oscillation about the target speed", 0.0, 10.0)] = (
-        0.0
+    speed_oscillation_amplitude: Annotated[
+        float, Signal("m/s", "amplitude of the speed oscillation about the target speed", 0.0, 10.0)
+    ] = 0.0
+    speed_oscillation_period: Annotated[float, Signal("s", "period of the speed oscillation", 0.1, 1000.0)] = 3.0
+    apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0, NEVER_VALUE)] = (
+        NEVER_VALUE
     )
-    wobble_period: Annotated[float, Signal("s", "period of the speed oscillation", 0.1, 1000.0)] = 3.0
-    apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0, NEVER)] = NEVER
-    apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0, NEVER)] = NEVER
+    apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0, NEVER_VALUE)] = (
+        NEVER_VALUE
+    )
     confirm_time: Annotated[
-        float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0, NEVER)
-    ] = NEVER
+        float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0, NEVER_VALUE)
+    ] = NEVER_VALUE
     confirms_when_asked: Annotated[bool, Signal("1", "presses the confirm button when prompted")] = True
 
 

@@ -65,7 +65,7 @@ def step(
                 heard = measure(heard, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns)
         gap = _clearance(car.pose, params, car.time_ns)
     state = VehicleState(car, heard, fault)
-    return state, _outputs(state, gap, inputs.person.drives and inputs.person.confirm, params)
+    return state, _outputs(state, gap, inputs.manual.active and inputs.manual.confirm, params)
 
 
 def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
@@ -80,7 +80,7 @@ def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
 def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehicleParams) -> VehicleOutput:
     car = state.car
     speed = car.speed
-    measured = car.speed if params.odometry.perfect else car.rolled_speed
+    measured = car.speed if params.odometry.ideal else car.rolled_speed
     if params.body != Body.KINEMATIC:
         speed = shown_speed(speed)
         measured = shown_speed(measured)
@@ -109,4 +109,4 @@ def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehiclePar
 
 def _is_finite_input(inputs: VehicleInput) -> bool:
     asked = inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request + inputs.force_request
-    return is_finite(asked + inputs.person.accelerator + inputs.person.brake)
+    return is_finite(asked + inputs.manual.accelerator + inputs.manual.brake)

@@ -19,7 +19,7 @@ HOUSE = "project default; the source states none"
 class OdometryParams(NamedTuple):
     """Errors of wheel-speed and steering sensors; perfect by default."""
 
-    perfect: Annotated[bool, Signal("1", "ideal odometry: the controller receives the true pose and speed")] = True
+    ideal: Annotated[bool, Signal("1", "ideal odometry: the controller receives the true pose and speed")] = True
     radius_error: Annotated[
         float, Signal("1", "relative error of the wheel radius", -0.5, 0.5, HOUSE), Role.TUNABLE
     ] = 0.0
@@ -63,4 +63,4 @@ def reckon(
 
 def wheel_speed_reading(speed: float, params: OdometryParams) -> float:
     """Return the speed [m/s] the wheel sensors tell."""
-    return speed if params.perfect else (1.0 + params.radius_error) * speed
+    return speed if params.ideal else (1.0 + params.radius_error) * speed

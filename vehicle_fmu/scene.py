@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.car import Car
 from modelkit.geometry import (
-    FAR,
+    NO_HIT,
     Box,
     OrientedBox,
     Point,
@@ -24,8 +24,8 @@ from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
 HOUSE = "project default; the source states none"
-FOREVER = 1e9
-TOUCH = 1e-9
+NEVER_TIME = 1e9
+TOUCH_DEPTH = 1e-9
 """Penetration depth [m] of what only touches: less than any other."""
 FAR_OUT = 1e8
 """Largest coordinate [m]: that of a map will do."""
@@ -39,12 +39,12 @@ class Obstacle(NamedTuple):
     heading: Annotated[float, Signal("rad", "direction of its length", -100.0, 100.0)] = 0.0
     length: Annotated[float, Signal("m", "length; 0: unused", 0.0, 1000.0)] = 0.0
     width: Annotated[float, Signal("m", "width", 0.0, 1000.0)] = 0.0
-    appear_at: Annotated[float, Signal("s", "present from this time on", 0.0, FOREVER)] = 0.0
-    disappear_at: Annotated[float, Signal("s", "removed from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
+    appear_at: Annotated[float, Signal("s", "present from this time on", 0.0, NEVER_TIME)] = 0.0
+    disappear_at: Annotated[float, Signal("s", "removed from this time on; 1e9: never", 0.0, NEVER_TIME)] = NEVER_TIME
     speed_x: Annotated[float, Signal("m/s", "speed along x while it moves", -50.0, 50.0)] = 0.0
     speed_y: Annotated[float, Signal("m/s", "speed along y while it moves", -50.0, 50.0)] = 0.0
-    moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, FOREVER)] = 0.0
-    halts_at: Annotated[float, Signal("s", "stops at this time; 1e9: never", 0.0, FOREVER)] = FOREVER
+    moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, NEVER_TIME)] = 0.0
+    halts_at: Annotated[float, Signal("s", "stops at this time; 1e9: never", 0.0, NEVER_TIME)] = NEVER_TIME
 
 
 class Kerb(NamedTuple):
@@ -88,14 +88,14 @@ def obstacle_box(obstacle: Obstacle, time_ns: int) -> Box:
 
 
 def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time_ns: int) -> float:
-    """Return the distance [m] from the car to the nearest thing; ``FAR`` in an empty scene.
+    """Return the distance [m] from the car to the nearest thing; ``NO_HIT`` in an empty scene.
 
     In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb lower than ``kerb_height``
     is no contact: it gives 0.
     """
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     body = oriented_outline(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
-    nearest = FAR
+    nearest = NO_HIT
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns), True)
@@ -115,5 +115,5 @@ def nearer(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> f
         return nearest
     gap = oriented_gap(car, oriented(thing))
     if gap <= 0.0:
-        gap = -max(TOUCH, -gap) if is_obstacle else 0.0
+        gap = -max(TOUCH_DEPTH, -gap) if is_obstacle else 0.0
     return min(nearest, gap)

@@ -1,7 +1,7 @@
 """The steering: request -> dead time -> lag -> angle and rate limits -> steering wheel -> backlash -> front wheels.
 
 Angle and rate limits are Guo 2015, Table 1; everything else is off by default. The dead time is
-a line of ``CELLS`` requests, so it is met to a 16th of itself whatever the step. At standstill
+a line of ``DELAY_CELLS`` requests, so it is met to a 16th of itself whatever the step. At standstill
 the tyres scrub and the wheel may turn slower.
 """
 
@@ -12,15 +12,15 @@ from modelkit.car import CarSteering
 from modelkit.maths import clamp, move_towards
 from vehicle_fmu.interface import SteeringParams
 
-CELLS = 16
-STANDSTILL = 0.05
+DELAY_CELLS = 16
+STANDSTILL_SPEED = 0.05
 """Speed [m/s] below which the car counts as standing for the steering."""
 
 
 class SteeringState(NamedTuple):
     """What the steering remembers besides the angle of the wheel."""
 
-    line: tuple[float, ...] = (0.0,) * CELLS
+    line: tuple[float, ...] = (0.0,) * DELAY_CELLS
     """Requests [rad] of the dead time, oldest first."""
     lagged: float = 0.0
     """Request after dead time and lag [rad]."""
@@ -34,7 +34,7 @@ def turn_steering_wheel(
     """Return the steering-wheel angle [rad] ``h`` [s] later, on its way to ``request``; the car's ``speed`` [m/s]."""
     target = clamp(request, -car.angle_limit, car.angle_limit)
     rate = car.rate_limit
-    if standstill_rate > 0.0 and abs(speed) < STANDSTILL:
+    if standstill_rate > 0.0 and abs(speed) < STANDSTILL_SPEED:
         rate = standstill_rate
     return move_towards(angle, target, rate * h)
 
@@ -46,8 +46,8 @@ def pass_request(
     line = state.line
     late = request
     if params.dead_time > 0.0:
-        cell_ns = int(params.dead_time * 1e9 / CELLS + 0.5)
-        for _ in range(min(CELLS, end_ns // cell_ns - start_ns // cell_ns)):
+        cell_ns = int(params.dead_time * 1e9 / DELAY_CELLS + 0.5)
+        for _ in range(min(DELAY_CELLS, end_ns // cell_ns - start_ns // cell_ns)):
             line = line[1:] + (request,)
         late = line[0]
     share = 1.0
@@ -59,7 +59,7 @@ def pass_request(
 
 def hold_request(angle: float, play: float) -> SteeringState:
     """Return the steering with nothing on its way: every request is the wheel's own ``angle`` [rad]."""
-    return SteeringState((angle,) * CELLS, angle, play)
+    return SteeringState((angle,) * DELAY_CELLS, angle, play)
 
 
 def take_up_play(play: float, angle: float, backlash: float) -> float:

@@ -10,7 +10,7 @@ from vehicle_fmu.interface import Body, DriveParams, VehicleParams
 from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
-LARGEST = 1e9
+MAX_MAGNITUDE = 1e9
 
 
 def is_usable(params: VehicleParams) -> bool:
@@ -21,7 +21,7 @@ def is_usable(params: VehicleParams) -> bool:
         and _sizes(params.car.wheelbase)
         and _sizes(params.car.steering.ratio)
         and _sizes(params.largest_step)
-        and _sizes(params.driver.wobble_period)
+        and _sizes(params.driver.speed_oscillation_period)
         and _sizes(params.chassis.mass)
         and _hears(params.car.ultrasonic, params.ultrasonic)
         and _stands(params.scene)
@@ -34,7 +34,7 @@ def is_usable(params: VehicleParams) -> bool:
 def _has_mass(params: VehicleParams) -> bool:
     return (
         _sizes(params.body_step)
-        and is_finite(params.road.slope + params.road.bank)
+        and is_finite(params.road.grade + params.road.cross_slope)
         and _is_chassis(params.chassis, params.car)
         and _drives(params.drive)
     )
@@ -107,7 +107,7 @@ def _hears(sensors: CarUltrasonic, p: UltrasonicParams) -> bool:
     total = p.noise + p.dropout + sensors.min_range + sensors.max_range + sensors.resolution
     for mount in sensors.mounts:
         total = total + mount.x + mount.y + mount.yaw
-    return is_finite(total) and 1e-6 <= sensors.cycle <= LARGEST and 0.0 < sensors.half_angle < 1.57
+    return is_finite(total) and 1e-6 <= sensors.cycle <= MAX_MAGNITUDE and 0.0 < sensors.half_angle < 1.57
 
 
 def _stands(p: SceneParams) -> bool:
@@ -122,4 +122,4 @@ def _stands(p: SceneParams) -> bool:
 
 def _sizes(value: float) -> bool:
     """Return whether ``value`` may be divided by."""
-    return 1e-9 <= value <= LARGEST
+    return 1e-9 <= value <= MAX_MAGNITUDE

@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from controller_fmu.adaptive.phases import AdaptivePhase
-from controller_fmu.common.chart import ANY, Row, next_state
+from controller_fmu.common.chart import ANY_STATE, Row, next_state
 from controller_fmu.common.phases import is_over
 
 
@@ -25,8 +25,8 @@ def _row(source: int, guard: Guard, target: AdaptivePhase) -> Row:
 
 
 TRANSITIONS: tuple[Row, ...] = (
-    _row(ANY, Guard.TAKEOVER, AdaptivePhase.TAKEOVER),
-    _row(ANY, Guard.FAULT, AdaptivePhase.FAILED),
+    _row(ANY_STATE, Guard.TAKEOVER, AdaptivePhase.TAKEOVER),
+    _row(ANY_STATE, Guard.FAULT, AdaptivePhase.FAILED),
     _row(AdaptivePhase.STANDBY, Guard.PLANNED, AdaptivePhase.PRE_STEER),
     _row(AdaptivePhase.PRE_STEER, Guard.WHEEL_SET_TO_REVERSE, AdaptivePhase.PATH_TRACKING),
     _row(AdaptivePhase.PRE_STEER, Guard.WHEEL_SET_TO_GO_AHEAD, AdaptivePhase.TO_Q4),

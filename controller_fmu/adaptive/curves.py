@@ -12,14 +12,14 @@ All poses here have the target at the origin, x ahead; curves turn right, then l
 import math
 from typing import NamedTuple
 
-from controller_fmu.adaptive.route import PIECES, Piece, Route
+from controller_fmu.adaptive.route import MAX_PIECES, Piece, Route
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
-STEEPEST = 80.0 * math.pi / 180.0
+MAX_HEADING = 80.0 * math.pi / 180.0
 NO_PIECE = Piece()
 NO_ROUTE = Route()
-HALVINGS = 24
+BISECTION_STEPS = 24
 LARGEST_RADIUS = 200.0
 
 
@@ -83,7 +83,7 @@ def s_curve(start: Pose, lead: float, first: Bend, second: Bend, rest: float) ->
     line = between - first.tangent - second.tangent
     arc1 = h1 - first.angle - on_arc.heading
     arc2 = h1 - second.angle - second.angle
-    if line < 0.0 or arc1 < 0.0 or arc2 < 0.0 or h1 > STEEPEST:
+    if line < 0.0 or arc1 < 0.0 or arc2 < 0.0 or h1 > MAX_HEADING:
         return NO_ROUTE
     pieces = (
         Piece(lead, 0.0, 0.0),
@@ -103,13 +103,13 @@ def arc_in(start: Pose, speed: float, wheel: SteeringLimits, rest: float) -> Rou
     """Return the route: left arc, clothoid, line of at least ``rest`` [m] to the target, the radius as it fits."""
     h = start.heading
     none = NO_ROUTE
-    if h <= 0.0 or h > STEEPEST or _above(start, wheel.radius, speed, wheel) < 0.0:
+    if h <= 0.0 or h > MAX_HEADING or _above(start, wheel.radius, speed, wheel) < 0.0:
         return none
     if _above(start, LARGEST_RADIUS, speed, wheel) > 0.0:
         return none
     low = wheel.radius
     high = LARGEST_RADIUS
-    for _ in range(HALVINGS):
+    for _ in range(BISECTION_STEPS):
         middle = 0.5 * (low + high)
         if _above(start, middle, speed, wheel) >= 0.0:
             low = middle
@@ -132,7 +132,7 @@ def _above(start: Pose, radius: float, speed: float, wheel: SteeringLimits) -> f
 def line_in(start: Pose, bend: Bend, rest: float) -> Route:
     """Return the route: line, clothoid, left arc, clothoid, line of at least ``rest`` [m] to the target."""
     h = start.heading
-    if h < 2.0 * bend.angle or h <= 0.0 or h > STEEPEST or start.y <= 0.0:
+    if h < 2.0 * bend.angle or h <= 0.0 or h > MAX_HEADING or start.y <= 0.0:
         return NO_ROUTE
     crossing = start.y / math.sin(h)
     needed = bend.tangent + bend.rho * math.tan(0.5 * h)
@@ -149,13 +149,13 @@ def line_in(start: Pose, bend: Bend, rest: float) -> Route:
 
 def straight(start: Pose, direction: int, length: float) -> Route:
     """Return a straight route of ``length`` [m]."""
-    return Route(start, direction, (Piece(length, 0.0, 0.0),) + (NO_PIECE,) * (PIECES - 1))
+    return Route(start, direction, (Piece(length, 0.0, 0.0),) + (NO_PIECE,) * (MAX_PIECES - 1))
 
 
 def arc(start: Pose, direction: int, length: float, curvature: float) -> Route:
     """Return an arc of ``length`` [m]."""
-    return Route(start, direction, (Piece(length, curvature, curvature),) + (NO_PIECE,) * (PIECES - 1))
+    return Route(start, direction, (Piece(length, curvature, curvature),) + (NO_PIECE,) * (MAX_PIECES - 1))
 
 
 def _route(start: Pose, a: Piece, b: Piece, c: Piece, d: Piece, e: Piece) -> Route:
-    return Route(start, -1, (a, b, c, d, e) + (NO_PIECE,) * (PIECES - 5))
+    return Route(start, -1, (a, b, c, d, e) + (NO_PIECE,) * (MAX_PIECES - 5))

@@ -11,25 +11,25 @@ from typing import NamedTuple
 from controller_fmu.adaptive.params import BeliefParams
 from modelkit.maths import clamp
 
-EARLY = 0.8
-LATE = 0.3
+BRAKING_FIT_UPPER_FRACTION = 0.8
+BRAKING_FIT_LOWER_FRACTION = 0.3
 """Shares of the speed at the prompt between which the deceleration is measured."""
-SLOWEST = 0.15
+MIN_STOPPING_SPEED = 0.15
 """A stop from less than this [m/s] teaches nothing."""
-SURE = 0.05
+REACTION_TIME_MARGIN = 0.05
 """Allowed on top of a reaction seen at setting out only [s]."""
-STOOD = 0.05
+STANDSTILL_SPEED = 0.05
 LONG_STOOD = 2.0
 """He stands after this time [s], if he has had time to act on the prompt; after the longer one in any case."""
-SMOOTHED = 0.08
+ACCELERATION_FILTER_TIME = 0.08
 """Time constant of the acceleration [s]."""
-FASTER = 1.12
+NONCOMPLIANCE_SPEED_RATIO = 1.12
 """Beyond this over the advice he does not slow down."""
-SLOWER = 0.7
+SLOW_DOWN_SPEED_RATIO = 0.7
 """Advice below this share of his largest speed is one to slow down."""
-STEADY = 1.5
-SETTLED = 1.5
-"""The speed he settles at is a mean over this time [s], in which it changes by less than ``STEADY`` [m/s2]."""
+MAX_STEADY_ACCELERATION = 1.5
+STEADY_SPEED_TIME = 1.5
+"""The settled speed is a mean over this time [s] of less than ``MAX_STEADY_ACCELERATION`` [m/s2]."""
 
 
 class Driver(NamedTuple):
@@ -66,7 +66,7 @@ class Driver(NamedTuple):
     stood_ns: int = 0
     early_ns: int = 0
     late_ns: int = 0
-    """When he had slowed down to ``EARLY`` and ``LATE``; 0: not yet."""
+    """When he had slowed down to ``BRAKING_FIT_UPPER_FRACTION`` and ``BRAKING_FIT_LOWER_FRACTION``; 0: not yet."""
 
 
 def prompted(driver: Driver, speed: float) -> Driver:
@@ -79,7 +79,9 @@ def prompted(driver: Driver, speed: float) -> Driver:
 def told_to_stop(driver: Driver, speed: float, advised: float, believed: BeliefParams) -> Driver:
     """Return the driver told to stop at ``speed`` [m/s]: who has come down with the advice on the way slows down."""
     v = abs(speed)
-    slows = driver.slows or (advised < SLOWER * driver.fastest and v <= FASTER * advised)
+    slows = driver.slows or (
+        advised < SLOW_DOWN_SPEED_RATIO * driver.fastest and v <= NONCOMPLIANCE_SPEED_RATIO * advised
+    )
     foreseen = stopping_way(driver, believed)
     return prompted(driver, speed)._replace(slows=slows and driver.obeys, foreseen=foreseen)
 
@@ -93,17 +95,17 @@ def seen_driving(
     sets_out = not driver.moved and v > standstill
     reaction = driver.reaction
     if sets_out and driver.stops == 0:
-        reaction = clamp(asked_ns * 1e-9, 0.0, 2.0) + SURE
+        reaction = clamp(asked_ns * 1e-9, 0.0, 2.0) + REACTION_TIME_MARGIN
     cruise = driver.cruise
-    if driver.moved and abs(driver.acceleration) < STEADY:
-        cruise = v if cruise == 0.0 else cruise + (v - cruise) * (dt_ns * 1e-9) / SETTLED
+    if driver.moved and abs(driver.acceleration) < MAX_STEADY_ACCELERATION:
+        cruise = v if cruise == 0.0 else cruise + (v - cruise) * (dt_ns * 1e-9) / STEADY_SPEED_TIME
     late = asked_ns * 1e-9 > reaction_of(driver, believed) + v / deceleration_of(driver, believed)
     return driver._replace(
         reaction=reaction,
         set_out=asked_ns * 1e-9 if sets_out else driver.set_out,
         fastest=max(driver.fastest, v),
         cruise=cruise,
-        obeys=driver.obeys and not (late and v > FASTER * advised + 0.03),
+        obeys=driver.obeys and not (late and v > NONCOMPLIANCE_SPEED_RATIO * advised + 0.03),
         speed=v,
         acceleration=_smoothed(driver, v, dt_ns),
         asked_ns=asked_ns,
@@ -122,8 +124,12 @@ def seen_stopping(driver: Driver, speed: float, standstill: float, dt_ns: int) -
         asked_ns=asked_ns,
         stop_way=driver.stop_way + v * (dt_ns * 1e-9),
         stood_ns=driver.stood_ns + dt_ns if v <= standstill else 0,
-        early_ns=asked_ns if driver.early_ns == 0 and v < EARLY * driver.stop_speed else driver.early_ns,
-        late_ns=asked_ns if driver.late_ns == 0 and v < LATE * driver.stop_speed else driver.late_ns,
+        early_ns=asked_ns
+        if driver.early_ns == 0 and v < BRAKING_FIT_UPPER_FRACTION * driver.stop_speed
+        else driver.early_ns,
+        late_ns=asked_ns
+        if driver.late_ns == 0 and v < BRAKING_FIT_LOWER_FRACTION * driver.stop_speed
+        else driver.late_ns,
     )
 
 
@@ -131,7 +137,7 @@ def has_stopped(driver: Driver, believed: BeliefParams) -> bool:
     """Return whether he stands because he was told to; one who crawls may stand for a moment before he acts on it."""
     stood = driver.stood_ns * 1e-9
     late = max(driver.set_out, reaction_of(driver, believed))
-    return stood >= STOOD and (driver.asked_ns * 1e-9 >= late or stood >= LONG_STOOD)
+    return stood >= STANDSTILL_SPEED and (driver.asked_ns * 1e-9 >= late or stood >= LONG_STOOD)
 
 
 def stopped(driver: Driver, believed: BeliefParams) -> Driver:
@@ -139,12 +145,12 @@ def stopped(driver: Driver, believed: BeliefParams) -> Driver:
     v = driver.stop_speed
     took = (driver.late_ns - driver.early_ns) * 1e-9
     still = driver._replace(speed=0.0, acceleration=0.0)
-    if v < SLOWEST or took <= 0.0:
+    if v < MIN_STOPPING_SPEED or took <= 0.0:
         return still
-    deceleration = clamp((EARLY - LATE) * v / took, 0.5, 15.0)
-    reaction = clamp(driver.early_ns * 1e-9 - (1.0 - EARLY) * v / deceleration, 0.0, 2.0)
+    deceleration = clamp((BRAKING_FIT_UPPER_FRACTION - BRAKING_FIT_LOWER_FRACTION) * v / took, 0.5, 15.0)
+    reaction = clamp(driver.early_ns * 1e-9 - (1.0 - BRAKING_FIT_UPPER_FRACTION) * v / deceleration, 0.0, 2.0)
     if driver.stops > 0 or driver.reaction > 0.0:
-        known = driver.reaction - (SURE if driver.stops == 0 else 0.0)
+        known = driver.reaction - (REACTION_TIME_MARGIN if driver.stops == 0 else 0.0)
         reaction = 0.5 * (known + clamp(reaction, known - 0.3, known + 0.3))
     stretch = driver.stretch
     if driver.stops > 0 and driver.foreseen > 0.0:
@@ -183,4 +189,4 @@ def shortest_way(driver: Driver, believed: BeliefParams) -> float:
 
 def _smoothed(driver: Driver, v: float, dt_ns: int) -> float:
     dt = dt_ns * 1e-9
-    return driver.acceleration + ((v - driver.speed) / dt - driver.acceleration) * dt / (dt + SMOOTHED)
+    return driver.acceleration + ((v - driver.speed) / dt - driver.acceleration) * dt / (dt + ACCELERATION_FILTER_TIME)

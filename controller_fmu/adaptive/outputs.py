@@ -21,7 +21,7 @@ def adaptive_outputs(state: AdaptiveState, params: AdaptiveSystemParams) -> Adap
         brake_request=state.phase == AdaptivePhase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
-        shifts=state.shifts,
+        manoeuvres=state.manoeuvres,
         reference=to_world(state.foot.reference, state.frame),
         lateral_error=state.foot.lateral_error,
         heading_error=state.foot.heading_error,

@@ -92,7 +92,7 @@ class AdaptiveSystem(IntEnum):
 class AdaptiveThresholds(Protocol):
     """What it has of the thresholds."""
 
-    wheel: float
+    steering_angle_reached: float
     standstill: float
 
 

@@ -24,28 +24,28 @@ from modelkit.vocabulary import Pose
 
 SPEEDS = (2.0, 1.6, 1.3, 1.05, 0.85, 0.7, 0.55, 0.42, 0.32, 0.25)
 """Speeds [m/s] that a route is tried for."""
-QUICK = 0.8
+ROUTE_DESIGN_SPEED = 0.8
 """A route for this speed [m/s] needs no longer way to begin with."""
 RADII = (1.0, 1.25, 1.6, 2.2, 4.0, 8.0)
 """Tried, over the smallest."""
 LEADS = (0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0)
 """Ways [m] straight back before the first arc."""
-STEP = 0.08
+STOP_SPACING = 0.08
 """On the first arc places to stop are looked for so far [m] apart."""
-STEPS = 90
+MAX_STOP_CANDIDATES = 90
 AHEAD = (0.3, 0.6, 1.0, 1.5, 2.0, 2.6, 3.3)
 """Ways [m] driven ahead for a better start."""
 TURNS = (0.0, -0.45, 0.45, -0.9, 0.9)
 """Curvature of them, over the largest."""
-ALIGNED = 0.015
+ALIGNED_OFFSET = 0.015
 ALIGNED_HEADING = 0.007
 """What tracking may leave [m], [rad] where it alone is to put the car right."""
-WIDEST = 0.08
-BESIDE = 0.25
+MAX_LINE_OFFSET = 0.08
+MAX_LINE_HEADING = 0.25
 """Largest offset [m] and heading [rad] from which the car goes ahead along the slot's line if nothing else leads in."""
-INSIDE = 0.9
+IN_SLOT_DISTANCE = 0.9
 """A car nearer than this [m] to the slot's line, turned by less than this [rad], is put right ahead of the target."""
-NARROW = 0.16
+MIN_STOP_WINDOW = 0.16
 """A place to stop [m] that can be met by a driver who is not known yet."""
 
 
@@ -85,11 +85,15 @@ def plan(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     back = plan_back(pose, demand, wheel, room)
     if back.route.direction != 0:
         return back
-    if abs(pose.y) < INSIDE and abs(pose.heading) < INSIDE:
+    if abs(pose.y) < IN_SLOT_DISTANCE and abs(pose.heading) < IN_SLOT_DISTANCE:
         onto = plan_onto(pose, demand, wheel, room)
         if onto.route.direction != 0:
             return onto
-    if abs(pose.y) < BESIDE and abs(pose.heading) < BESIDE and farthest(room) - pose.x >= demand.shortest:
+    if (
+        abs(pose.y) < MAX_LINE_HEADING
+        and abs(pose.heading) < MAX_LINE_HEADING
+        and farthest(room) - pose.x >= demand.shortest
+    ):
         return Plan(straight(Pose(pose.x, 0.0, 0.0), 1, farthest(room) - pose.x), ANY_SPEED)
     ahead = plan_ahead(pose, demand, wheel, room, True)
     if ahead.route.direction != 0:
@@ -138,7 +142,7 @@ def _moving(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Pl
     """Return the fastest plan in reverse without a stop for a willing driver, else one for his speed."""
     best = NO_PLAN
     for lead in LEADS:
-        if best.speed >= QUICK or (best.route.direction != 0 and not demand.willing):
+        if best.speed >= ROUTE_DESIGN_SPEED or (best.route.direction != 0 and not demand.willing):
             return best
         if demand.willing:
             for speed in SPEEDS:
@@ -186,8 +190,8 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: S
         start = Pose(pose.x, mirror * pose.y, mirror * pose.heading)
         first = -1.0
         last = -1.0
-        for number in range(STEPS):
-            way = STEP * number
+        for number in range(MAX_STOP_CANDIDATES):
+            way = STOP_SPACING * number
             at = point_at(arc(start, -1, way, -1.0 / radius), way).pose
             inwards = arc_in(at, demand.speed, wheel, demand.rest)
             free = inwards.direction != 0
@@ -199,7 +203,7 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: S
                 last = way
             elif first >= 0.0:
                 break
-        if last - first >= NARROW and last > 0.0:
+        if last - first >= MIN_STOP_WINDOW and last > 0.0:
             way = first + demand.share * (last - first)
             if way >= demand.shortest:
                 return arc(pose, -1, way, -mirror / radius)
@@ -244,12 +248,12 @@ def _is_aligned(pose: Pose, way: float) -> bool:
     With both gains 1 and 2 the offset obeys y'' = -y - 2 y': y = (y0 + (y0 + y0') s) exp(-s).
     """
     slope = -math.tan(pose.heading) if pose.x > 0.0 else math.tan(pose.heading)
-    if abs(pose.y) > WIDEST or abs(slope) > WIDEST:
+    if abs(pose.y) > MAX_LINE_OFFSET or abs(slope) > MAX_LINE_OFFSET:
         return False
     decay = math.exp(-way)
     both = pose.y + slope
     y = (pose.y + both * way) * decay
-    return abs(y) <= ALIGNED and abs(slope - both * way) * decay <= ALIGNED_HEADING
+    return abs(y) <= ALIGNED_OFFSET and abs(slope - both * way) * decay <= ALIGNED_HEADING
 
 
 def _slower(route: Route, demand: Demand, wheel: SteeringLimits, room: Room) -> Route:

@@ -6,12 +6,12 @@ from controller_fmu.adaptive.params import RoomParams
 from controller_fmu.adaptive.route import Route
 from controller_fmu.common.curve import advance
 from modelkit.car import Car
-from modelkit.geometry import FAR, Box, boxes_gap, boxes_overlap, corners, outline
+from modelkit.geometry import NO_HIT, Box, boxes_gap, boxes_overlap, corners, outline
 from modelkit.vocabulary import Pose
 
 LOOKED_AT = 0.2
 """Poses of a route are looked at so far [m] apart."""
-NEIGHBOUR = 8.0
+NEIGHBOUR_LENGTH = 8.0
 
 
 class Room(NamedTuple):
@@ -31,8 +31,8 @@ class Room(NamedTuple):
 def room_of(car: Car, params: RoomParams) -> Room:
     """Return the room, in the slot's frame."""
     middle = params.line - 0.5 * params.depth
-    front = Box(params.slot_front + 0.5 * NEIGHBOUR, middle, 0.0, NEIGHBOUR, params.depth)
-    rear = Box(-params.slot_rear - 0.5 * NEIGHBOUR, middle, 0.0, NEIGHBOUR, params.depth)
+    front = Box(params.slot_front + 0.5 * NEIGHBOUR_LENGTH, middle, 0.0, NEIGHBOUR_LENGTH, params.depth)
+    rear = Box(-params.slot_rear - 0.5 * NEIGHBOUR_LENGTH, middle, 0.0, NEIGHBOUR_LENGTH, params.depth)
     return Room(
         car.wheelbase,
         car.front_overhang,
@@ -61,7 +61,7 @@ def room_along(route: Route, room: Room, enough: float) -> float:
     """Return the least distance [m] along a route; as soon as it is below ``enough`` that of the first such pose."""
     direction = float(route.direction)
     pose = route.start
-    least = FAR
+    least = NO_HIT
     for piece in route.pieces:
         if piece.length > 0.0:
             steps = int(piece.length / LOOKED_AT) + 1

@@ -7,9 +7,9 @@ from controller_fmu.common.curve import advance
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
-PIECES = 9
-JUMP = 1e-6
-INTO = 0.001
+MAX_PIECES = 9
+JUMP_DISTANCE = 1e-6
+STANDSTILL_LOOKAHEAD = 0.001
 """So far [m] into a route its curvature is looked up at standstill: past a jump at its start."""
 
 
@@ -26,7 +26,7 @@ class Route(NamedTuple):
 
     start: Pose = Pose()
     direction: int = 0
-    pieces: tuple[Piece, ...] = (Piece(),) * PIECES
+    pieces: tuple[Piece, ...] = (Piece(),) * MAX_PIECES
 
 
 class RoutePoint(NamedTuple):
@@ -61,7 +61,7 @@ def drivable(route: Route) -> float:
     begun = False
     for piece in route.pieces:
         if piece.length > 0.0:
-            if begun and abs(piece.k0 - last) > JUMP:
+            if begun and abs(piece.k0 - last) > JUMP_DISTANCE:
                 return along
             along += piece.length
             last = piece.k1

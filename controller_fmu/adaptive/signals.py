@@ -3,7 +3,7 @@
 from typing import Annotated, NamedTuple
 
 from controller_fmu.adaptive.phases import AdaptivePhase
-from controller_fmu.adaptive.route import PIECES
+from controller_fmu.adaptive.route import MAX_PIECES
 from controller_fmu.interface import (
     STATE_OF_THE_CHART,
     HeadingError,
@@ -33,7 +33,7 @@ class AdaptiveMove(NamedTuple):
 
     start: Annotated[Pose, Group("where the move starts, in the world")] = Pose()
     direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
-    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * PIECES
+    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * MAX_PIECES
     end: Annotated[float, Signal("m", "way along the move at which the car is to stand", 0.0)] = 0.0
 
 
@@ -57,7 +57,7 @@ class AdaptiveOutput(NamedTuple):
     brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=AdaptivePhase)] = 0
     reason: ReasonTold = 0
-    shifts: Shifts = 0
+    manoeuvres: Shifts = 0
     reference: ReferencePose = Pose()
     lateral_error: LateralError = 0.0
     heading_error: HeadingError = 0.0

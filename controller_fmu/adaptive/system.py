@@ -21,7 +21,7 @@ from controller_fmu.adaptive.params import AdaptiveSystemParams
 from controller_fmu.adaptive.phases import AdaptivePhase, direction_of, expected_in
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
-from controller_fmu.adaptive.route import INTO, Foot, curvature_at, drivable, foot_on
+from controller_fmu.adaptive.route import STANDSTILL_LOOKAHEAD, Foot, curvature_at, drivable, foot_on
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import (
     MonitorState,
@@ -39,12 +39,12 @@ from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-STEEPEST = 1.3
-LOOP = 0.02
+MAX_TRACKING_HEADING = 1.3
+LOOP_DEAD_TIME = 0.02
 """From a request to the wheel's first movement, of the loop itself [s]."""
 UNKNOWN_SPEED = 1.0
 """Speed [m/s] of a driver who has not driven yet, where no route is free of stops."""
-RESERVE = 1.0
+STOPPING_DISTANCE_FACTOR = 1.0
 RESERVE_SPEED = 0.05
 TOO_FAST = 1.08
 TOO_FAST_BY = 0.03
@@ -55,7 +55,7 @@ class AdaptiveState(NamedTuple):
 
     phase: int = AdaptivePhase.STANDBY
     reason: int = Reason.NONE
-    shifts: int = 0
+    manoeuvres: int = 0
     direction: int = 0
     running_ns: int = 0
     frame: SlotFrame = SlotFrame()
@@ -106,7 +106,7 @@ def adaptive_sample(
         seen = _stood(seen, pose, params)
     elif direction_of(state.phase) != 0 or state.phase == AdaptivePhase.STOP:
         seen = _tracked(seen, pose)
-    reason = reason_to_fail(monitor, inputs, expected, seen.running_ns, state.shifts, params)
+    reason = reason_to_fail(monitor, inputs, expected, seen.running_ns, state.manoeuvres, params)
     if reason == Reason.NONE and standing and _is_stuck(seen, pose, params):
         reason = Reason.NO_PATH if state.phase == AdaptivePhase.STANDBY else Reason.MISSED_TARGET
     phase = transition(state.phase, _guards(seen, reason, pose, inputs, standing, params))
@@ -139,7 +139,9 @@ def _stood(state: AdaptiveState, pose: Pose, params: AdaptiveSystemParams) -> Ad
         return state._replace(driver=driver, plan=NO_PLAN)
     path = params.adaptive.path
     known = driver.fastest > 0.0
-    speed = RESERVE * 0.5 * (driver.cruise + driver.fastest) + RESERVE_SPEED if known else UNKNOWN_SPEED
+    speed = (
+        STOPPING_DISTANCE_FACTOR * 0.5 * (driver.cruise + driver.fastest) + RESERVE_SPEED if known else UNKNOWN_SPEED
+    )
     shortest = 0.05 if driver.slows else shortest_way(driver, params.adaptive.belief)
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
@@ -190,8 +192,8 @@ def _guards(
     standing: bool,
     params: AdaptiveSystemParams,
 ) -> int:
-    wheel_there = abs(inputs.steering_wheel_angle - state.request) <= params.threshold.wheel
-    straight = abs(inputs.steering_wheel_angle) <= params.threshold.wheel
+    wheel_there = abs(inputs.steering_wheel_angle - state.request) <= params.threshold.steering_angle_reached
+    straight = abs(inputs.steering_wheel_angle) <= params.threshold.steering_angle_reached
     limit = params.adaptive.end
     begun = state.begun
     off = abs(state.foot.lateral_error) > limit.leave_lateral + abs(begun.lateral_error) or abs(
@@ -214,7 +216,7 @@ def _guards(
 def _moved_on(state: AdaptiveState, phase: int, inputs: ParkingInput, params: AdaptiveSystemParams) -> AdaptiveState:
     direction = direction_of(phase)
     turned = direction != 0 and direction != state.direction
-    counted = turned and (state.shifts > 0 or direction < 0)
+    counted = turned and (state.manoeuvres > 0 or direction < 0)
     driver = state.driver
     if phase != state.phase and direction != 0:
         driver = prompted(driver, inputs.measured_speed)
@@ -223,7 +225,7 @@ def _moved_on(state: AdaptiveState, phase: int, inputs: ParkingInput, params: Ad
     along = direction * inputs.measured_speed
     moved = state._replace(
         phase=phase,
-        shifts=state.shifts + 1 if counted else state.shifts,
+        manoeuvres=state.manoeuvres + 1 if counted else state.manoeuvres,
         direction=direction if direction != 0 else state.direction,
         driver=driver,
         moving=along > 0.05 or (state.moving and along > params.threshold.standstill),
@@ -240,10 +242,10 @@ def _request(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
         return 0.0
     route = state.plan.route
     path = params.adaptive.path
-    late = delay_of(state.monitor.wheel.steering) + LOOP
-    soon = max(INTO, state.foot.way + late * state.driver.speed)
+    late = delay_of(state.monitor.wheel.steering) + LOOP_DEAD_TIME
+    soon = max(STANDSTILL_LOOKAHEAD, state.foot.way + late * state.driver.speed)
     curvature = curvature_at(route, min(soon, max(state.end, state.foot.way)))
-    turned = clamp(state.foot.heading_error, -STEEPEST, STEEPEST)
+    turned = clamp(state.foot.heading_error, -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING)
     c = math.cos(turned)
     feedback = path.k1 * state.foot.lateral_error + route.direction * path.k2 * math.tan(turned)
     angle = math.atan(params.car.wheelbase * c * c * c * (curvature - feedback))

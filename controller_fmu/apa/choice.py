@@ -25,7 +25,7 @@ class ChosenSide(IntEnum):
     LEFT = 2
 
 
-class Choice(NamedTuple):
+class DriverSelection(NamedTuple):
     """The driver's choice, which may change at any time before it is confirmed."""
 
     task: Annotated[int, Signal("1", "to park, or to pull out", states=ChosenTask)] = ChosenTask.PARK

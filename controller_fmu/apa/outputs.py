@@ -99,7 +99,7 @@ def apa_outputs(state: ApaState, params: ApaSystemParams) -> ApaOutput:
         brake_request=braking or failed or state.mode == Mode.PARKING_FINISH,
         phase=phase_of(state),
         reason=state.reason,
-        shifts=parking.shifts,
+        manoeuvres=parking.manoeuvres,
         reference=to_world(parking.tracked.reference, site.frame),
         lateral_error=parking.tracked.lateral_error,
         heading_error=parking.tracked.heading_error,

@@ -16,7 +16,7 @@ from controller_fmu.interface import (
 from modelkit.car import Car
 from modelkit.signal import Role, Signal, Subset
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 SOURCE = "APA function requirements"
 
 
@@ -55,7 +55,9 @@ class PlanParams(NamedTuple):
     kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.13
     stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.1
     at_a_time: Annotated[int, Signal("1", "candidates looked at in one sample", 1, 1000, HOUSE)] = 40
-    shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
+    manoeuvres: Annotated[
+        int, Signal("1", "maximum number of manoeuvres; the first reverse motion counts as one", 1, 30, "GB/T 41630")
+    ] = 8
 
 
 class ApaDriveParams(NamedTuple):
@@ -107,7 +109,7 @@ class MapParams(NamedTuple):
     drift: Annotated[float, Signal("1", "odometry may be wrong by this share of the way", 0.0, 0.2, HOUSE)] = 0.006
     turn_drift: Annotated[float, Signal("rad/m", "and turn by this over it", 0.0, 0.1, HOUSE)] = 0.0012
     heard: Annotated[float, Signal("m", "farthest reading that the map learns from", 0.1, 10.0, HOUSE)] = 2.0
-    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.001, 1.0, HOUSE)] = 0.03
+    noise: Annotated[float, Signal("m", "standard deviation of a measurement", 0.001, 1.0, HOUSE)] = 0.03
     floor: Annotated[float, Signal("m", "nothing is surer than this: mounting of the sensors", 0.0, 1.0, HOUSE)] = 0.015
     certain: Annotated[
         float, Signal("m", "parked is told between neighbours that are sure to this", 0.01, 1.0, HOUSE)
@@ -123,11 +125,13 @@ class EndParams(NamedTuple):
     lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.03
     heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.7 * pi / 180.0
     out: Annotated[float, Signal("m", "farthest a parked car stands out of the slot", 0.0, 0.15, "GB/T 41630")] = 0.14
-    few: Annotated[int, Signal("1", "shifts after which tuning is only for more than the next two", 0, 30, HOUSE)] = 3
-    near_lateral: Annotated[float, Signal("m", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.04
-    near_heading: Annotated[float, Signal("rad", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.9 * pi / 180.0
-    miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.07
-    miss_heading: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
+    few: Annotated[int, Signal("1", "manoeuvres after which tuning needs a gain of more than two", 0, 30, HOUSE)] = 3
+    near_lateral: Annotated[float, Signal("m", "parked after so many manoeuvres", 0.001, 0.5, HOUSE)] = 0.04
+    near_heading: Annotated[float, Signal("rad", "parked after that many", 0.001, 0.5, HOUSE)] = 0.9 * pi / 180.0
+    final_lateral_error: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
+        0.07
+    )
+    final_heading_error: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
         1.5 * pi / 180.0
     )
 
@@ -149,7 +153,9 @@ class GuardParams(NamedTuple):
     )
     over_speed_time: Annotated[float, Signal("s", "for longer than this", 0.0, 10.0, HOUSE)] = 0.3
     pedal: Annotated[float, Signal("1", "brake pedal counts as pressed", 0.01, 1.0, HOUSE)] = 0.2
-    patience: Annotated[float, Signal("s", "longest wait for the driver, wheel or car", 0.1, 600.0, HOUSE)] = 15.0
+    driver_response_timeout: Annotated[
+        float, Signal("s", "longest wait for the driver, wheel or car", 0.1, 600.0, HOUSE)
+    ] = 15.0
     confirm: Annotated[float, Signal("s", "longest wait for confirmation", 0.1, 3600.0, HOUSE)] = 60.0
     duration: Annotated[float, Signal("s", "longest time from confirmation to parked", 1.0, 3600.0, HOUSE)] = 120.0
 
@@ -176,7 +182,7 @@ class ApaSystem(IntEnum):
 class ApaThresholds(Protocol):
     """What it has of the thresholds."""
 
-    wheel: float
+    steering_angle_reached: float
 
 
 class ApaLimits(Protocol):
@@ -184,8 +190,8 @@ class ApaLimits(Protocol):
 
     stopping: float
     pose_frozen: float
-    wheel_off: float
-    wheel_fault: float
+    steering_tracking_error: float
+    steering_fault_debounce: float
 
 
 class ApaSystemParams(NamedTuple):

@@ -47,9 +47,9 @@ TURNED = 0.03
 LEVEL_OUT = 0.035
 """A car beside the road is worth tuning, too, while its nose or tail stands out of the line by more than this [m]."""
 SHIFTS_PERPENDICULAR = 7
-"""Most shifts into a perpendicular slot (GB/T 41630)."""
+"""Most manoeuvres into a perpendicular slot (GB/T 41630)."""
 TRIED = 6
-"""After so many shifts a car in place does not drive deeper only to be surer that it is in the slot."""
+"""After so many manoeuvres a car in place does not drive deeper only to be surer that it is in the slot."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""
 
@@ -66,7 +66,7 @@ class Parking(NamedTuple):
     """Odd: the car may stand out of the slot a little; each two more: smaller margins, see ``fit``."""
     leg: Leg = Leg()
     tracked: Tracked = Tracked()
-    shifts: int = 0
+    manoeuvres: int = 0
     direction: int = 0
     """Last driven, 0: not yet."""
     ended: bool = False
@@ -111,7 +111,7 @@ def place_for(slot: Slot, attempt: int, out: bool, odometry: Pose, params: ApaSy
 def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ApaSystemParams) -> int:
     """Return the attempt to make after a search that led nowhere; the same if there is none.
 
-    Before it sets out, a car that needs more than few shifts is tried with closer margins first; then a
+    Before it sets out, a car that needs more than few manoeuvres is tried with closer margins first; then a
     parallel one may stand out, then come closer still. A car under way may come closer step by step.
     """
     nothing = plan.status == NOTHING
@@ -203,7 +203,7 @@ def _looked_around(
     tracked = track(move, state.leg, state.tracked.way, place.pose, params.apa.drive, params.car.wheelbase)
     bare = site_of(around.slot, shape_of(params), Margins(0.0, 0.0, 0.0))
     sight = sight_of(move.direction, bare, around, inputs, params)
-    leads_away = state.out or state.shifts <= 1
+    leads_away = state.out or state.manoeuvres <= 1
     if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, leads_away, params):
         sight = sight._replace(blocked=True, unknown=False)
     return state._replace(tracked=tracked, sight=sight)
@@ -218,9 +218,9 @@ def _guards(
     stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
     limit = apa.end
     right = is_in_place(place, limit.lateral, limit.heading) and end_out(place, shape_of(params)) <= LEVEL_OUT
-    if state.shifts >= limit.few:
+    if state.manoeuvres >= limit.few:
         right = right or is_in_place(place, limit.near_lateral, limit.near_heading)
-    well_enough = is_in_place(place, limit.miss_lateral, limit.miss_heading)
+    well_enough = is_in_place(place, limit.final_lateral_error, limit.final_heading_error)
     plan = state.plan
     sight = state.sight
     tracked = state.tracked
@@ -230,9 +230,9 @@ def _guards(
         or (plan.status == FOUND and more_shifts(state, plan) > most_shifts(place.site.kind, state.out, params))
     )
     wheel = inputs.steering_wheel_angle
-    set_up = abs(wheel - state.wheel) <= params.threshold.wheel
+    set_up = abs(wheel - state.wheel) <= params.threshold.steering_angle_reached
     at_end = tracked.left <= AT_END or state.cut
-    well_settled = settled.surely or (settled.enough and state.shifts >= TRIED)
+    well_settled = settled.surely or (settled.enough and state.manoeuvres >= TRIED)
     in_place = (well_settled and right) or (settled.enough and stuck and well_enough and allowed)
     if state.out:
         in_place = plan.status == FOUND and plan.moves == 0 and allowed
@@ -244,21 +244,21 @@ def _guards(
         | bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
         | bit(StepGuard.STANDING_AT_END, standing and at_end)
         | bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
-        | bit(StepGuard.WHEEL_STRAIGHT, abs(wheel) <= params.threshold.wheel)
+        | bit(StepGuard.WHEEL_STRAIGHT, abs(wheel) <= params.threshold.steering_angle_reached)
     )
 
 
 def more_shifts(state: Parking, plan: PlanSearch) -> int:
-    """Return the shifts at the end of the plan: those driven and at least those to come."""
-    first = 0 if plan.move.direction == state.direction or (state.shifts == 0 and plan.move.direction > 0) else 1
-    return state.shifts + first + plan.moves - 1
+    """Return the manoeuvres at the end of the plan: those driven and at least those to come."""
+    first = 0 if plan.move.direction == state.direction or (state.manoeuvres == 0 and plan.move.direction > 0) else 1
+    return state.manoeuvres + first + plan.moves - 1
 
 
 def most_shifts(kind: int, out: bool, params: ApaSystemParams) -> int:
-    """Return the most shifts into a slot of this kind, or ``out`` of any."""
+    """Return the most manoeuvres into a slot of this kind, or ``out`` of any."""
     if out:
         return SHIFTS
-    most = params.apa.plan.shifts
+    most = params.apa.plan.manoeuvres
     return min(most, SHIFTS_PERPENDICULAR) if kind == Kind.PERPENDICULAR else most
 
 
@@ -285,7 +285,7 @@ def _moved_on(
     if step == Step.HALT and before == Step.DRIVE:
         state = state._replace(cut=state.sight.blocked and not state.sight.unknown)
     if step == Step.PLAN and before != Step.PLAN:
-        wide = place.site.kind == Kind.PARALLEL and state.shifts < params.apa.end.few
+        wide = place.site.kind == Kind.PARALLEL and state.manoeuvres < params.apa.end.few
         state = state._replace(
             cuts=state.cuts + 1 if state.cut else state.cuts,
             stuck=state.cut and state.tracked.way < AT_END,
@@ -323,8 +323,8 @@ def _set_out(state: Parking) -> Parking:
     direction = state.plan.move.direction
     if direction == state.direction:
         return state
-    counted = state.shifts > 0 or direction < 0
-    return state._replace(shifts=state.shifts + 1 if counted else state.shifts, direction=direction)
+    counted = state.manoeuvres > 0 or direction < 0
+    return state._replace(manoeuvres=state.manoeuvres + 1 if counted else state.manoeuvres, direction=direction)
 
 
 def _next_leg(state: Parking, before: int) -> Leg:

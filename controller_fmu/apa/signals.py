@@ -4,10 +4,10 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.choice import OFFERED, Choice
+from controller_fmu.apa.choice import OFFERED, DriverSelection
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.slot import Kind, Side, Slot
-from controller_fmu.common.told import ToldSlot
+from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import (
     STATE_OF_THE_CHART,
     HeadingError,
@@ -122,12 +122,12 @@ class ApaInput(NamedTuple):
     driver_takeover: DriverTakeover = False
     vehicle_fault: VehicleFaultShown = 0
     ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+        Annotated[float, Signal("m", "measured range: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
     ] = (5.0,) * 12
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
-    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
-    choice: Annotated[Choice, Group("what the driver chooses on the display")] = Choice()
+    external_slot: Annotated[ExternalSlot, Group("a slot from outside: a camera, a map, a test bench")] = ExternalSlot()
+    driver_selection: Annotated[DriverSelection, Group("selection by the driver on the display")] = DriverSelection()
 
 
 class ApaOutput(NamedTuple):
@@ -144,7 +144,7 @@ class ApaOutput(NamedTuple):
     brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=ApaPhase)] = 0
     reason: ReasonTold = 0
-    shifts: Shifts = 0
+    manoeuvres: Shifts = 0
     reference: ReferencePose = Pose()
     lateral_error: LateralError = 0.0
     heading_error: HeadingError = 0.0

@@ -35,9 +35,9 @@ from controller_fmu.apa.slot import Kind, Slot
 from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.sensors import Listened, listened_on
-from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
@@ -101,7 +101,7 @@ def apa_sample(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns
     state = state._replace(listened=heard_last)
     command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
     looking = state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH) and not has_slot(state)
-    out = state.parking.out or inputs.choice.task == ChosenTask.PULL_OUT
+    out = state.parking.out or inputs.driver_selection.task == ChosenTask.PULL_OUT
     duty = Duty(driving, 0 if out else spared(inputs.ultrasonic, looking))
     state = state._replace(watch=watch(state.watch, command, inputs, duty, params, dt_ns))
     taken = driving and is_taken_over(state.watch, inputs, params)
@@ -114,7 +114,9 @@ def apa_sample(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns
         if state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH):
             state = _chosen(state, inputs, params, dt_ns)
         elif state.mode == Mode.PARKING_SPACE_APPEARS:
-            state = state._replace(chosen=number_chosen(state.search, inputs.choice.side, inputs.choice.slot))
+            state = state._replace(
+                chosen=number_chosen(state.search, inputs.driver_selection.side, inputs.driver_selection.slot)
+            )
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
             state = _parked_on(state, inputs, driving, params, dt_ns)
     judged = Judged(_later_reason(reason, state, params), taken)
@@ -125,10 +127,10 @@ def apa_sample(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns
 def _chosen(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns: int) -> ApaState:
     """Return the assist that knows which slot is meant, of those that it has found or from outside."""
     told = watch_told(state.told, state.search, inputs, state.listened.fresh, shape_of(params), params)
-    number = number_chosen(state.search, inputs.choice.side, inputs.choice.slot)
-    if inputs.told.kind != SlotKind.NONE:
+    number = number_chosen(state.search, inputs.driver_selection.side, inputs.driver_selection.slot)
+    if inputs.external_slot.kind != SlotKind.NONE:
         number = 0
-    return state._replace(told=told, chosen=number, task=inputs.choice.task)
+    return state._replace(told=told, chosen=number, task=inputs.driver_selection.task)
 
 
 def _parked_on(state: ApaState, inputs: ApaInput, driving: bool, params: ApaSystemParams, dt_ns: int) -> ApaState:
@@ -232,8 +234,8 @@ def _guards(state: ApaState, inputs: ApaInput, judged: Judged, params: ApaSystem
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
-    out = inputs.choice.task == ChosenTask.PULL_OUT
-    told = inputs.told.kind != SlotKind.NONE
+    out = inputs.driver_selection.task == ChosenTask.PULL_OUT
+    told = inputs.external_slot.kind != SlotKind.NONE
     known = given and (state.told.slot.kind if told else params.apa.search.slot.kind) != Kind.NONE
     another = state.shown > 0 and state.chosen != state.shown
     return (
@@ -314,7 +316,7 @@ def _is_waiting(mode: int, parking: Parking, inputs: ApaInput) -> bool:
 
 def _shown(state: ApaState, inputs: ApaInput, params: ApaSystemParams) -> ApaState:
     """Return the assist that shows the slot that is meant, with its map of it, and plans the way in, or out."""
-    out = inputs.choice.task == ChosenTask.PULL_OUT
+    out = inputs.driver_selection.task == ChosenTask.PULL_OUT
     number = state.chosen
     slot = params.apa.search.slot
     here = state.around.map
@@ -324,7 +326,7 @@ def _shown(state: ApaState, inputs: ApaInput, params: ApaSystemParams) -> ApaSta
     elif out:
         slot = slot_around(inputs, shape_of(params), params)
         number = 0
-    elif inputs.told.kind != SlotKind.NONE:
+    elif inputs.external_slot.kind != SlotKind.NONE:
         slot = state.told.slot
     elif number > 0:
         slot = braked(state.search.slots[number - 1], state.search.fastest, params)

@@ -9,18 +9,18 @@ from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
 from controller_fmu.apa.ways.fit import fit_of
-from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
-from controller_fmu.common.slot_frame import SlotFrame, to_slot
-from controller_fmu.common.told import (
+from controller_fmu.common.external_slot import (
     AT_THE_ROAD,
-    ECHOES,
-    UNTOLD,
+    MIN_CONTRADICTING_ECHOES,
+    UNKNOWN_DEPTH,
     WELL_IN,
+    ExternalSlot,
     SlotKind,
-    ToldSlot,
     depth_of,
     is_usable_slot,
 )
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, VALID_RANGE_FRACTION, sensor_at
+from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
@@ -52,7 +52,7 @@ class ToldWatch(NamedTuple):
     slot: Slot = Slot()
     """Kind none: not told, not passed yet, or refused."""
     refused: int = Reason.NONE
-    judged: ToldSlot = ToldSlot()
+    judged: ExternalSlot = ExternalSlot()
     """As it was told when it was judged."""
     echoes: int = 0
     """Heard in it since."""
@@ -64,7 +64,7 @@ def watch_told(
     state: ToldWatch, search: SearchState, inputs: ApaInput, fresh: bool, car: Shape, params: ApaSystemParams
 ) -> ToldWatch:
     """Return the slot that is told, as far as it may be shown; ``fresh``: the sensors tell something new."""
-    told = inputs.told
+    told = inputs.external_slot
     if told.kind == SlotKind.NONE:
         return ToldWatch()
     if not is_usable_slot(told):
@@ -83,13 +83,15 @@ def watch_told(
         a = _listened(a, -at.x, deep)
         b = _listened(b, at.x - slot.length, deep)
     slot = slot._replace(empty_a=_is_nobody(a), empty_b=_is_nobody(b))
-    if refused == Reason.NONE and echoes >= ECHOES:
+    if refused == Reason.NONE and echoes >= MIN_CONTRADICTING_ECHOES:
         refused = Reason.SLOT_CONTRADICTED
     shown = refused == Reason.NONE and (params.apa.search.given or _is_passed(slot, inputs, params))
     return ToldWatch(slot if shown else Slot(), refused, state.judged if same else told, echoes, a, b)
 
 
-def slot_of_told(told: ToldSlot, search: SearchState, inputs: ApaInput, car: Shape, params: ApaSystemParams) -> Slot:
+def slot_of_told(
+    told: ExternalSlot, search: SearchState, inputs: ApaInput, car: Shape, params: ApaSystemParams
+) -> Slot:
     """Return the slot that is told, corner A first on the car's way; a depth that is not told is the one heard."""
     pose = inputs.odometry
     dx = told.bx - told.ax
@@ -108,7 +110,7 @@ def slot_of_told(told: ToldSlot, search: SearchState, inputs: ApaInput, car: Sha
         depth=depth_of(told),
         unsure=params.apa.search.told_unsure,
     )
-    if slot.depth >= UNTOLD:
+    if slot.depth >= UNKNOWN_DEPTH:
         slot = slot._replace(depth=_depth_heard(search, slot))
     far = search.far_right if side == Side.LEFT else search.far_left
     if far < params.car.ultrasonic.max_range:
@@ -116,7 +118,7 @@ def slot_of_told(told: ToldSlot, search: SearchState, inputs: ApaInput, car: Sha
     return slot
 
 
-def reason_to_refuse(told: ToldSlot, slot: Slot, car: Shape, params: ApaSystemParams) -> int:
+def reason_to_refuse(told: ExternalSlot, slot: Slot, car: Shape, params: ApaSystemParams) -> int:
     """Return why a car cannot park in a slot that is told, ``NONE`` if it may."""
     leaning = abs(math.cos(told.heading - slot.a.heading))
     if told.kind == SlotKind.NOSE_IN or leaning > SQUARE:
@@ -138,7 +140,7 @@ def _depth_heard(search: SearchState, slot: Slot) -> float:
     return depth
 
 
-def _is_same(told: ToldSlot, before: ToldSlot) -> bool:
+def _is_same(told: ExternalSlot, before: ExternalSlot) -> bool:
     """Return whether this is the slot told before, seen again."""
     return (
         told.kind == before.kind
@@ -168,7 +170,7 @@ def _reading_of(slot: Slot, inputs: ApaInput) -> float:
 def _is_inside(at: Pose, reading: float, slot: Slot, car: Shape, params: ApaSystemParams) -> bool:
     """Return whether an echo comes from where the car would stand, wherever in the cone it comes from."""
     sensors = params.car.ultrasonic
-    if reading > HEARD * sensors.max_range:
+    if reading > VALID_RANGE_FRACTION * sensors.max_range:
         return False
     x = at.x + reading * math.cos(at.heading)
     y = at.y + reading * math.sin(at.heading)
@@ -186,4 +188,4 @@ def _listened(beside: Beside, away: float, y: float) -> Beside:
 
 
 def _is_nobody(beside: Beside) -> bool:
-    return beside.readings >= LISTENED and beside.of_one < ECHOES
+    return beside.readings >= LISTENED and beside.of_one < MIN_CONTRADICTING_ECHOES

@@ -61,7 +61,7 @@ def watch(state: Watch, command: Command, inputs: ApaInput, duty: Duty, params: 
     wheel = at_rest(angle, state.wheel.steering)
     mute = count_mute(inputs.ultrasonic)
     if driving:
-        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.wheel_off, rate, dt_ns)
+        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.steering_tracking_error, rate, dt_ns)
     moving_expected = command.step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
@@ -110,13 +110,13 @@ def reason_to_fail(
         return Reason.NONE
     if state.fast * 1e-9 > guard.over_speed_time:
         return Reason.OVER_SPEED
-    if has_failed(state.wheel, params.limit.wheel_fault):
+    if has_failed(state.wheel, params.limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
     if state.stopping * 1e-9 > params.limit.stopping:
         return Reason.NOT_STOPPING
     if state.blocked * 1e-9 > (max(guard.blocked, WAIT_OUT) if task == ChosenTask.PULL_OUT else guard.blocked):
         return Reason.BLOCKED
-    if state.waiting * 1e-9 > guard.patience:
+    if state.waiting * 1e-9 > guard.driver_response_timeout:
         return Reason.STEERING_FAULT if _is_off(state.wheel) else Reason.NOT_MOVING
     if state.running * 1e-9 > guard.duration:
         return Reason.TIMEOUT

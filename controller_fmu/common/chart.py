@@ -3,7 +3,7 @@
 Guards are numbers; which of them hold is one integer with a bit for each. Rows are in order of priority.
 """
 
-ANY = -1
+ANY_STATE = -1
 """The source of a row that holds in every state."""
 Row = tuple[int, int, int]
 
@@ -16,6 +16,6 @@ def bit(guard: int, holds: bool) -> int:
 def next_state(state: int, guards: int, rows: tuple[Row, ...]) -> int:
     """Return the state after one sample; ``guards`` holds bit g for guard g."""
     for source, guard, target in rows:
-        if (source == state or source == ANY) and (guards >> guard) & 1 == 1:
+        if (source == state or source == ANY_STATE) and (guards >> guard) & 1 == 1:
             return target
     return state

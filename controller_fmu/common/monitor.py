@@ -13,7 +13,7 @@ from controller_fmu.interface import Monitored, Reason, Sensed, SensedWithFault
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
-FARTHEST = 1e9
+MAX_PLAUSIBLE_VALUE = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 SLOWEST_SEEN = 0.1
 """A pose counted in ticks may rightly stand still for half a second at less than this [m/s]."""
@@ -62,7 +62,7 @@ def watch(
     rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
     if expected.begun:
-        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
+        wheel = watch_steering(state.wheel, request, angle, params.limit.steering_tracking_error, rate, dt_ns)
     return MonitorState(
         waiting=state.waiting + dt_ns if still and (direction != 0 or expected.steering) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
@@ -106,7 +106,7 @@ def reason_to_fail(
     inputs: SensedWithFault,
     expected: Expected,
     running_ns: int,
-    shifts: int,
+    manoeuvres: int,
     params: Monitored,
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
@@ -117,15 +117,15 @@ def reason_to_fail(
         return Reason.TIMEOUT if running_ns * 1e-9 > limit.duration else Reason.NONE
     if state.frozen * 1e-9 > limit.pose_frozen:
         return Reason.POSE_FROZEN
-    if has_failed(state.wheel, limit.wheel_fault):
+    if has_failed(state.wheel, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
     if state.wrong_way * 1e-9 > limit.wrong_direction:
         return Reason.WRONG_DIRECTION
     if state.stopping * 1e-9 > limit.stopping:
         return Reason.NOT_STOPPING
-    if state.waiting * 1e-9 > limit.patience:
+    if state.waiting * 1e-9 > limit.driver_response_timeout:
         return Reason.STEERING_FAULT if expected.steering else Reason.NOT_MOVING
-    if shifts > limit.shifts:
+    if manoeuvres > limit.manoeuvres:
         return Reason.TOO_MANY_SHIFTS
     if running_ns * 1e-9 > limit.duration:
         return Reason.TIMEOUT
@@ -136,9 +136,9 @@ def is_usable_input(inputs: Sensed) -> bool:
     """Return False if a number that the controller steers by is NaN, infinite or beyond all sense."""
     pose = inputs.odometry
     return (
-        abs(pose.x) < FARTHEST
-        and abs(pose.y) < FARTHEST
-        and abs(pose.heading) < FARTHEST
-        and abs(inputs.measured_speed) < FARTHEST
-        and abs(inputs.steering_wheel_angle) < FARTHEST
+        abs(pose.x) < MAX_PLAUSIBLE_VALUE
+        and abs(pose.y) < MAX_PLAUSIBLE_VALUE
+        and abs(pose.heading) < MAX_PLAUSIBLE_VALUE
+        and abs(inputs.measured_speed) < MAX_PLAUSIBLE_VALUE
+        and abs(inputs.steering_wheel_angle) < MAX_PLAUSIBLE_VALUE
     )

@@ -11,14 +11,16 @@ HOUSE = "project default; the source states none"
 class ThresholdParams(NamedTuple):
     """When the car stands, the wheel is turned, the target is missed, the car is lost."""
 
-    miss_lateral: Annotated[
+    final_lateral_error: Annotated[
         float, Signal("m", "final error above which the target is missed", 0.0, 10.0, "GB/T 41630")
     ] = 0.15
-    miss_heading: Annotated[
+    final_heading_error: Annotated[
         float, Signal("rad", "final error above which the target is missed", 0.0, 1.5, "GB/T 41630")
     ] = 3.0 * pi / 180.0
-    lost_lateral: Annotated[float, Signal("m", "error above which the controller aborts", 0.1, 100.0, HOUSE)] = 2.0
-    wheel: Annotated[
+    abort_lateral_error: Annotated[float, Signal("m", "error above which the controller aborts", 0.1, 100.0, HOUSE)] = (
+        2.0
+    )
+    steering_angle_reached: Annotated[
         float,
         Signal("rad", "steering-wheel error within which the requested angle counts as reached", 1e-4, 1.0, HOUSE),
     ] = 2.0 * pi / 180.0
@@ -30,22 +32,24 @@ class ThresholdParams(NamedTuple):
 class LimitParams(NamedTuple):
     """No strategy goes on for ever: each limit ends in Fail with its reason."""
 
-    shifts: Annotated[
+    manoeuvres: Annotated[
         int, Signal("1", "maximum number of manoeuvres; the first reverse motion counts as one", 1, 100, "GB/T 41630")
     ] = 8
     duration: Annotated[
         float, Signal("s", "maximum time to parked; below 0.3 m/s it counts by distance", 1.0, 3600.0, HOUSE)
     ] = 120.0
-    patience: Annotated[float, Signal("s", "maximum time for the driver to start moving", 0.1, 600.0, HOUSE)] = 15.0
+    driver_response_timeout: Annotated[
+        float, Signal("s", "maximum time for the driver to start moving", 0.1, 600.0, HOUSE)
+    ] = 15.0
     stopping: Annotated[float, Signal("s", "maximum time for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
     wrong_direction: Annotated[float, Signal("s", "maximum distance driven against the prompt", 0.1, 60.0, HOUSE)] = 1.5
     pose_frozen: Annotated[float, Signal("s", "maximum time of driving without a change of pose", 0.1, 60.0, HOUSE)] = (
         0.5
     )
-    wheel_off: Annotated[
+    steering_tracking_error: Annotated[
         float, Signal("rad", "steering tracking error above which the fault monitor acts", 0.01, 20.0, HOUSE)
     ] = 0.1
-    wheel_fault: Annotated[
+    steering_fault_debounce: Annotated[
         float,
         Signal(
             "s",

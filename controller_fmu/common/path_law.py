@@ -17,11 +17,11 @@ from typing import NamedTuple
 from modelkit.maths import clamp, wrap_angle
 from modelkit.vocabulary import Pose
 
-STEEPEST = 1.3
+MAX_TRACKING_HEADING = 1.3
 
 
 class Deviation(NamedTuple):
-    """How far a car is off a point of its path: to the left [m], turned to the left [rad], at most ``STEEPEST``."""
+    """Tracking error at a point of the path: left [m], turned left [rad], at most ``MAX_TRACKING_HEADING``."""
 
     lateral: float
     heading: float
@@ -30,7 +30,7 @@ class Deviation(NamedTuple):
 def deviation(pose: Pose, at: Pose) -> Deviation:
     """Return how far ``pose`` is off the path's point ``at``."""
     e = (pose.y - at.y) * math.cos(at.heading) - (pose.x - at.x) * math.sin(at.heading)
-    return Deviation(e, clamp(wrap_angle(pose.heading - at.heading), -STEEPEST, STEEPEST))
+    return Deviation(e, clamp(wrap_angle(pose.heading - at.heading), -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING))
 
 
 def angle_back(off: Deviation, curvature: float, direction: float, k1: float, k2: float, wheelbase: float) -> float:

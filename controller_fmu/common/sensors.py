@@ -9,9 +9,9 @@ from modelkit.vocabulary import Pose
 LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 """The front ones of the flanks, by which slots are found."""
-LATE = 0.01
+MAX_SAMPLE_LATENCY = 0.01
 """So long [s] new readings may be under way."""
-HEARD = 0.99
+VALID_RANGE_FRACTION = 0.99
 """A reading of more than this share of the range tells nothing."""
 
 
@@ -33,7 +33,7 @@ class Listened(NamedTuple):
 def listened_on(before: Listened, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float) -> Listened:
     """Return what is heard in a sample of ``dt_ns``: new readings may come later than they are measured.
 
-    Where data is exchanged seldom, what was measured when the ``cycle`` [s] ended comes up to ``LATE`` [s] later: until
+    Where data is exchanged seldom, a sample arrives up to ``MAX_SAMPLE_LATENCY`` [s] after its ``cycle`` [s]: until
     then the readings are the last ones still. Readings that are the same after that are new ones too.
     """
     due = is_told_anew(clock_ns, dt_ns, cycle)
@@ -43,7 +43,7 @@ def listened_on(before: Listened, readings: tuple[float, ...], clock_ns: int, dt
     changed = due and before.waited_ns > 0
     for number in range(12):
         changed = changed or readings[number] != before.readings[number]
-    if not changed and waited * 1e-9 <= LATE:
+    if not changed and waited * 1e-9 <= MAX_SAMPLE_LATENCY:
         return before._replace(waited_ns=waited, fresh=False)
     return Listened(readings, 0, True)
 

@@ -13,31 +13,31 @@ from typing import NamedTuple
 
 from modelkit.maths import clamp, sign
 
-NEARER = 0.05
-SHARE = 0.15
-SLOWEST = 0.02
+MIN_PROGRESS_ANGLE = 0.05
+PROGRESS_FRACTION = 0.15
+PROGRESS_TIME = 0.02
 """Coming nearer means: by this share of the way, at most as far as the known rate goes in this time [s], but by
-``NEARER`` [rad] at least."""
-FORGOTTEN = 0.15
+``MIN_PROGRESS_ANGLE`` [rad] at least."""
+REQUEST_FILTER_TIME = 0.15
 """Time constant [s] of what was asked for a moment ago."""
-JUMP = 0.3
-MOVED = 0.02
+REQUEST_JUMP = 0.3
+MIN_MOVEMENT = 0.02
 SHORTEST_DEAD_TIME = 0.05
 """The loop itself takes two samples; a dead time [s] is one that is longer than this."""
 LONGEST_DEAD_TIME = 0.5
 USUAL_DEAD_TIME = 0.1
 """A dead time [s] up to this needs no more time than is allowed anyway."""
-UNSEEN = 0.2
-BEGUN = 0.01
+FIRST_RESPONSE_TIME = 0.2
+FIRST_RESPONSE_ANGLE = 0.01
 """A steering that has not yet been seen to follow, and has begun to by so much [rad], may take this much [s] longer to
 come nearer: how lazy or slow it is nobody knows yet."""
 WINDOW_NS = 100_000_000
-EVEN = 0.05
+STEADY_RATE_TOLERANCE = 0.05
 """Two windows are even, and a rate is as believed, if they differ by less than this share."""
-FAR = 0.5
-HOLDS = 0.02
-LAZY = 0.8
-ALIKE = 0.2
+FAR_REQUEST = 0.5
+HELD_REQUEST = 0.02
+LAG_RATE_RATIO = 0.8
+LAG_FIT_TOLERANCE = 0.2
 """A wheel is held back by its lag where it becomes slower as it comes nearer, in proportion to what is left."""
 LONGEST_LAG = 1.0
 
@@ -97,15 +97,19 @@ def watch_steering(
     """Return the watch after ``request`` [rad] held for ``dt_ns`` and brought the wheel to ``angle`` [rad]."""
     dt = dt_ns * 1e-9
     moved = angle - state.angle
-    late = state.late + (request - state.late) * dt / (dt + FORGOTTEN)
+    late = state.late + (request - state.late) * dt / (dt + REQUEST_FILTER_TIME)
     side = sign(request - angle) if abs(request - angle) > tolerance else 0.0
-    step = clamp(SHARE * abs(request - angle), NEARER, NEARER + SLOWEST * rate_of(state.steering, believed_rate))
+    step = clamp(
+        PROGRESS_FRACTION * abs(request - angle),
+        MIN_PROGRESS_ANGLE,
+        MIN_PROGRESS_ANGLE + PROGRESS_TIME * rate_of(state.steering, believed_rate),
+    )
     nearer = side * (angle - state.anchor) >= step
     away = side * moved < 0.0
     explained = away and side * (late - angle) < 0.0
     follows = side == 0.0 or side != state.side or nearer or explained
     asked_ns, dead_time = _dead_time(state, request, angle, tolerance, dt_ns)
-    kept_up = side == 0.0 and abs(angle - state.window.angle) > MOVED
+    kept_up = side == 0.0 and abs(angle - state.window.angle) > MIN_MOVEMENT
     seen = state.steering.seen or nearer or kept_up
     window, rate, lag = _window(state, request, angle, believed_rate, dt_ns)
     return SteeringWatch(
@@ -126,8 +130,8 @@ def has_failed(state: SteeringWatch, longest: float) -> bool:
     """Return whether the wheel has stood or gone away for ``longest`` [s], longer only if its dead time is long."""
     late = state.steering.dead_time - USUAL_DEAD_TIME
     allowed = longest + 2.0 * late if late > 0.0 else longest
-    begun = not state.steering.seen and state.side * (state.angle - state.anchor) >= BEGUN
-    return state.off_ns * 1e-9 > (allowed + UNSEEN if begun else allowed)
+    begun = not state.steering.seen and state.side * (state.angle - state.anchor) >= FIRST_RESPONSE_ANGLE
+    return state.off_ns * 1e-9 > (allowed + FIRST_RESPONSE_TIME if begun else allowed)
 
 
 def rate_of(steering: Steering, believed: float) -> float:
@@ -145,9 +149,9 @@ def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: fl
     known = state.steering.dead_time
     if state.asked_ns < 0:
         resting = abs(state.request - state.angle) <= tolerance and abs(state.request - state.late) <= tolerance
-        jumped = resting and abs(request - state.request) > JUMP
+        jumped = resting and abs(request - state.request) > REQUEST_JUMP
         return (dt_ns if jumped else -1), known
-    if state.side * (angle - state.anchor) < MOVED and state.side != 0.0:
+    if state.side * (angle - state.anchor) < MIN_MOVEMENT and state.side != 0.0:
         return state.asked_ns + dt_ns, known
     dead_time = state.asked_ns * 1e-9
     if SHORTEST_DEAD_TIME < dead_time < LONGEST_DEAD_TIME:
@@ -173,15 +177,20 @@ def _window(
     known = rate_of(steering, believed_rate)
     learnt = steering.rate
     lag = steering.lag
-    if towards and left > FAR and holds < 0.2 * abs(moved) and abs(rate - window.rate) < EVEN * rate:
-        learnt = rate if abs(rate - known) > EVEN * known else learnt
+    if (
+        towards
+        and left > FAR_REQUEST
+        and holds < 0.2 * abs(moved)
+        and abs(rate - window.rate) < STEADY_RATE_TOLERANCE * rate
+    ):
+        learnt = rate if abs(rate - known) > STEADY_RATE_TOLERANCE * known else learnt
     elif (
         towards
-        and holds < HOLDS
-        and left > HOLDS
-        and abs(moved) > HOLDS
-        and rate < LAZY * window.rate
-        and abs(rate * before - window.rate * left) < ALIKE * window.rate * left
+        and holds < HELD_REQUEST
+        and left > HELD_REQUEST
+        and abs(moved) > HELD_REQUEST
+        and rate < LAG_RATE_RATIO * window.rate
+        and abs(rate * before - window.rate * left) < LAG_FIT_TOLERANCE * window.rate * left
     ):
         lag = 0.5 * (before + left) / rate
         lag = lag if lag < LONGEST_LAG else LONGEST_LAG

@@ -7,7 +7,7 @@ there to what the leg begins with, then the leg is driven.
 
 from enum import IntEnum
 
-from controller_fmu.common.chart import ANY
+from controller_fmu.common.chart import ANY_STATE
 from controller_fmu.common.phases import is_over
 from controller_fmu.guo2015.phases import GuoPhase
 
@@ -38,19 +38,19 @@ class Guard(IntEnum):
     STANDING_AHEAD = 20
 
 
-KEEP = -1
+SAME_LEG = -1
 """The leg stays as it is."""
 
 Row = tuple[int, int, int, int]
 
 
-def _row(source: int, guard: Guard, target: GuoPhase, leg: int = KEEP) -> Row:
+def _row(source: int, guard: Guard, target: GuoPhase, leg: int = SAME_LEG) -> Row:
     return (int(source), int(guard), int(target), int(leg))
 
 
 TRANSITIONS: tuple[Row, ...] = (
-    _row(ANY, Guard.TAKEOVER, GuoPhase.TAKEOVER),
-    _row(ANY, Guard.FAULT, GuoPhase.FAILED),
+    _row(ANY_STATE, Guard.TAKEOVER, GuoPhase.TAKEOVER),
+    _row(ANY_STATE, Guard.FAULT, GuoPhase.FAILED),
     _row(GuoPhase.STANDBY, Guard.PLANNED, GuoPhase.PRE_STEER, GuoPhase.PATH_TRACKING),
     _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_PATH, GuoPhase.PATH_TRACKING),
     _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_Q2, GuoPhase.TO_Q2),
@@ -78,6 +78,6 @@ def transition(phase: int, leg: int, guards: int) -> tuple[int, int]:
     if is_over(phase):
         return phase, leg
     for source, guard, target, next_leg in TRANSITIONS:
-        if (source == phase or source == ANY) and (guards >> guard) & 1 == 1:
-            return target, leg if next_leg == KEEP else next_leg
+        if (source == phase or source == ANY_STATE) and (guards >> guard) & 1 == 1:
+            return target, leg if next_leg == SAME_LEG else next_leg
     return phase, leg

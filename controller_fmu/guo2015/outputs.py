@@ -31,7 +31,7 @@ def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
         brake_request=state.phase == GuoPhase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
-        shifts=state.shifts,
+        manoeuvres=state.manoeuvres,
         reference=to_world(state.tracking.reference, frame),
         lateral_error=state.tracking.lateral_error,
         heading_error=state.tracking.heading_error,

@@ -12,9 +12,9 @@ from controller_fmu.guo2015.smooth_path import PathShape, on_curve, way_left
 from modelkit.maths import clamp
 
 FIRST_ARC = 0
-LINE = 1
+LINE_PIECE = 1
 SECOND_ARC = 2
-BEYOND = 3
+BEYOND_PATH = 3
 LARGEST_SINE = 0.996
 """Keeps the reference heading under 85 deg where x leaves an arc."""
 
@@ -32,7 +32,15 @@ class Reference(NamedTuple):
 
 def reference_at(path: TwoArcPath, x: float, latched: int) -> Reference:
     """Return the reference for ``x`` [m], on the piece ``latched`` or a later one."""
-    piece = FIRST_ARC if x > path.tangent1.x else LINE if x > path.tangent2.x else SECOND_ARC if x > 0.0 else BEYOND
+    piece = (
+        FIRST_ARC
+        if x > path.tangent1.x
+        else LINE_PIECE
+        if x > path.tangent2.x
+        else SECOND_ARC
+        if x > 0.0
+        else BEYOND_PATH
+    )
     if piece < latched:
         piece = latched
     if path.curve.shape != PathShape.TWO_ARCS:
@@ -45,7 +53,7 @@ def reference_at(path: TwoArcPath, x: float, latched: int) -> Reference:
         sine = clamp((path.start.x + r * s0 - x) / r, -LARGEST_SINE, LARGEST_SINE)
         y = path.start.y - r * c0 + r * math.sqrt(1.0 - sine * sine)
         return Reference(x, y, math.asin(sine), -1.0 / r, piece)
-    if piece == LINE:
+    if piece == LINE_PIECE:
         q1 = path.tangent2
         return Reference(x, q1.y + (x - q1.x) * math.tan(q1.heading), q1.heading, 0.0, piece)
     if piece == SECOND_ARC:
@@ -58,7 +66,7 @@ def distance_to_jump(path: TwoArcPath, reference: Reference) -> float:
     """Return the way [m] along the path to the end of the reference's piece; 0 beyond the path."""
     if reference.piece == FIRST_ARC:
         return path.radius * (path.tangent1.heading - reference.heading)
-    if reference.piece == LINE:
+    if reference.piece == LINE_PIECE:
         return (reference.x - path.tangent2.x) / math.cos(reference.heading)
     if reference.piece == SECOND_ARC:
         return path.radius * reference.heading
@@ -71,7 +79,7 @@ def curvature_after(path: TwoArcPath, piece: int) -> float:
         return 0.0
     if piece == FIRST_ARC and path.tangent1.x - path.tangent2.x > 1e-6:
         return 0.0
-    if piece <= LINE:
+    if piece <= LINE_PIECE:
         return 1.0 / path.radius
     return 0.0
 
@@ -84,6 +92,6 @@ def distance_to_end(path: TwoArcPath, reference: Reference) -> float:
     to_q1 = path.radius * path.tangent2.heading
     if reference.piece == FIRST_ARC:
         return distance_to_jump(path, reference) + line / math.cos(path.tangent2.heading) + to_q1
-    if reference.piece == LINE:
+    if reference.piece == LINE_PIECE:
         return distance_to_jump(path, reference) + to_q1
     return distance_to_jump(path, reference)

@@ -13,12 +13,12 @@ from controller_fmu.guo2015.path import Reference
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-STEEPEST = 89.0 * math.pi / 180.0
+MAX_TRACKING_HEADING = 89.0 * math.pi / 180.0
 
 
 def path_tracking_angle(pose: Pose, reference: Reference, k1: float, k2: float, wheelbase: float) -> float:
     """Return the front-wheel angle [rad] that leads ``pose`` to the path; not yet limited."""
-    heading = clamp(pose.heading, -STEEPEST, STEEPEST)
+    heading = clamp(pose.heading, -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING)
     c = math.cos(heading)
     c_r = math.cos(reference.heading)
     feedforward = reference.curvature / (c_r * c_r * c_r)

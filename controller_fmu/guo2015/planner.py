@@ -18,7 +18,7 @@ from controller_fmu.guo2015.smooth_path import Curve, PathShape, curve
 from modelkit.vocabulary import Pose
 
 HALF_PI = 0.5 * math.pi
-STEEPEST = 85.0 * math.pi / 180.0
+MAX_TANGENT_HEADING = 85.0 * math.pi / 180.0
 """Largest heading of the tangent; the laws need |heading| < pi / 2."""
 
 
@@ -70,10 +70,10 @@ def path_from(start: Pose, largest_radius: float, smallest_radius: float, shape:
     """Return the path of ``shape`` from ``start`` (slot's frame) to the origin."""
     if shape == PathShape.TWO_ARCS:
         return two_arcs(start, largest_radius, smallest_radius)
-    if start.x <= 0.0 or start.y <= 0.0 or not -STEEPEST < start.heading < STEEPEST:
+    if start.x <= 0.0 or start.y <= 0.0 or not -MAX_TANGENT_HEADING < start.heading < MAX_TANGENT_HEADING:
         return NO_PATH
     found = curve(shape, start, wheelbase)
-    if found.curvature * smallest_radius > 1.0 or found.inflection.heading > STEEPEST:
+    if found.curvature * smallest_radius > 1.0 or found.inflection.heading > MAX_TANGENT_HEADING:
         return NO_PATH
     return TwoArcPath(True, 1.0 / found.curvature, start, found.inflection, found.inflection, found)
 
@@ -92,7 +92,7 @@ def two_arcs(start: Pose, largest_radius: float, smallest_radius: float) -> TwoA
     line_squared = dx * dx + dy * dy - 4.0 * radius * radius
     line = math.sqrt(line_squared) if line_squared > 0.0 else 0.0
     h1 = math.atan2(dy, dx) - math.atan2(-2.0 * radius, line)
-    if h1 < start.heading - 1e-12 or h1 < -1e-12 or h1 > STEEPEST or start.x <= 0.0:
+    if h1 < start.heading - 1e-12 or h1 < -1e-12 or h1 > MAX_TANGENT_HEADING or start.x <= 0.0:
         return NO_PATH
     s1 = math.sin(h1)
     c1 = math.cos(h1)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from modelkit.maths import clamp, wrap_angle
 from modelkit.vocabulary import Pose
 
-STEEPEST = 89.0 * math.pi / 180.0
+MAX_TRACKING_HEADING = 89.0 * math.pi / 180.0
 
 
 class PointError(NamedTuple):
@@ -35,6 +35,6 @@ def point_error(pose: Pose, point: Pose) -> PointError:
 
 def point_tracking_angle(error: PointError, direction: float, k3: float, k4: float, wheelbase: float) -> float:
     """Return the front-wheel angle [rad] that leads to the point; not yet limited."""
-    heading = clamp(error.heading, -STEEPEST, STEEPEST)
+    heading = clamp(error.heading, -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING)
     c = math.cos(heading)
     return math.atan(wheelbase * c * c * c * (-k3 * error.y - direction * k4 * math.tan(heading)))

@@ -32,9 +32,9 @@ PROMPT_OF_PHASE = (
     Prompt.NONE,
 )
 """One for each member of GuoPhase, in its order."""
-FOLLOWED = 0.8
+USED_RATE_FRACTION = 0.8
 """Share of the wheel's rate that is used on a path without jumps of curvature."""
-MOVING = 0.05
+MOVING_SPEED = 0.05
 """A car faster than this [m/s] has set out."""
 
 
@@ -45,7 +45,7 @@ def path_speed(
     prompting = params.guo2015.prompting
     advice = prompting.speed_limit
     if path.curve.swing > 0.0:
-        rate = FOLLOWED * rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
+        rate = USED_RATE_FRACTION * rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
         advice = min(rate / path.curve.swing, advice)
     k = reference.curvature
     k_next = curvature_after(path, reference.piece)
@@ -93,7 +93,7 @@ def prompt_of(phase: int, moving: bool, advice: float, params: GuoPrompts) -> in
 def is_moving(before: bool, speed: float, direction: int, standstill: float) -> bool:
     """Return whether the car is on its way in ``direction``; one that has set out is until it stands."""
     along = direction * speed
-    return along > MOVING or (before and along > standstill)
+    return along > MOVING_SPEED or (before and along > standstill)
 
 
 def _speed_before(speed_there: float, distance: float, speed: float, params: GuoPrompts) -> float:

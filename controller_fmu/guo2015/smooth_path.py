@@ -20,7 +20,7 @@ from typing import NamedTuple
 from modelkit.maths import TWO_PI, clamp
 from modelkit.vocabulary import Pose
 
-SAMPLES = 64
+PATH_SAMPLES = 64
 NODES = (-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683, 0.906179845938664)
 WEIGHTS = (0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189)
 
@@ -73,8 +73,8 @@ def curve(shape: int, start: Pose, wheelbase: float) -> Curve:
     swing = 0.0
     inflection = Pose()
     before = on_curve(bare, start.x)
-    step = start.x / SAMPLES
-    for number in range(1, SAMPLES + 1):
+    step = start.x / PATH_SAMPLES
+    for number in range(1, PATH_SAMPLES + 1):
         x = start.x - step * number
         here = on_curve(bare, x)
         largest = max(largest, abs(here.curvature))

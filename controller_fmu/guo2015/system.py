@@ -41,7 +41,7 @@ class GuoState(NamedTuple):
     driven: int = GuoPhase.PATH_TRACKING
     """What was driven last: its law holds while the car comes to a stop."""
     reason: int = Reason.NONE
-    shifts: int = 0
+    manoeuvres: int = 0
     direction: int = 0
     running_ns: int = 0
     piece: int = 0
@@ -107,15 +107,17 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
 def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemParams) -> int:
     limit = params.threshold
     expected = expected_in(state.phase)
-    reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.shifts, params)
+    reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.manoeuvres, params)
     if reason != Reason.NONE:
         return reason
     if not now.planned.path.found:
         return Reason.NO_PATH
-    if abs(tracking.lateral_error) > limit.lost_lateral:
+    if abs(tracking.lateral_error) > limit.abort_lateral_error:
         return Reason.LEFT_PATH
-    straight = state.phase == GuoPhase.STRAIGHTEN and abs(now.inputs.steering_wheel_angle) <= limit.wheel
-    if straight and not within(now.pose.y, now.pose.heading, limit.miss_lateral, limit.miss_heading):
+    straight = (
+        state.phase == GuoPhase.STRAIGHTEN and abs(now.inputs.steering_wheel_angle) <= limit.steering_angle_reached
+    )
+    if straight and not within(now.pose.y, now.pose.heading, limit.final_lateral_error, limit.final_heading_error):
         return Reason.MISSED_TARGET
     return Reason.NONE
 
@@ -129,7 +131,7 @@ def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, param
         bit(Guard.TAKEOVER, now.inputs.driver_takeover)
         | bit(Guard.FAULT, reason != Reason.NONE)
         | bit(Guard.PLANNED, path.found and abs(speed) <= params.threshold.standstill)
-        | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
+        | wheel_guards(state.leg, wheel, state.request, params.threshold.steering_angle_reached)
         | way_guards(tracking, now.pose, path, speed, params)
         | standing
     )
@@ -150,7 +152,7 @@ def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSys
         leg=leg,
         driven=driven,
         reason=Reason.NONE,
-        shifts=state.shifts + 1 if turned else state.shifts,
+        manoeuvres=state.manoeuvres + 1 if turned else state.manoeuvres,
         direction=direction if direction != 0 else state.direction,
         running_ns=state.running_ns + time_counted(now.dt_ns, now.inputs.measured_speed, params.threshold.standstill),
         piece=tracking.piece,
@@ -191,7 +193,7 @@ def _swing(state: GuoState, phase: int, request: float, now: Sample, params: Guo
     """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
     limit = params.guo2015.prompting.speed_limit
     wheel = now.inputs.steering_wheel_angle
-    if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.wheel_off:
+    if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.steering_tracking_error:
         return limit
     lock = params.car.steering.angle_limit
     angle = clamp(wheel, -lock, lock) / params.car.steering.ratio

@@ -41,7 +41,7 @@ class Characteristic(IntEnum):
     SHUFFLE_NEAR = 12
 
 
-STANDING = 0.005
+STANDSTILL_SPEED = 0.005
 """Below this speed [m/s] the car stands."""
 GROUP_OF_STAGE = (0, 1, 1, 1, 2)
 """Ready point, slot, in-slot shuffle: one for each HsicStage, in its order."""
@@ -69,7 +69,7 @@ def errors(pose: Pose, key: Pose, speed: float, direction: int) -> Errors:
     dx = pose.x - key.x
     dy = pose.y - key.y
     ahead = dx * c + dy * s
-    way = speed if abs(speed) > STANDING else STANDING * direction
+    way = speed if abs(speed) > STANDSTILL_SPEED else STANDSTILL_SPEED * direction
     turned = pose.heading - key.heading
     along = way * math.cos(turned)
     return Errors(ahead, dy * c - dx * s, turned, math.sqrt(dx * dx + dy * dy), along if ahead >= 0.0 else -along)

@@ -7,7 +7,7 @@ from controller_fmu.hsic.params import HsicGains
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
 from modelkit.maths import clamp
 
-SHARPNESS = 10.0
+SWITCHING_SLOPE = 10.0
 """Slope of the bang-bang's edge, so that it does not chatter on its switching line."""
 
 
@@ -39,12 +39,12 @@ def curvature(mode: int, now: Situation, arc: float, lock: float, gain: HsicGain
         return arc
     lateral = gain.lateral * now.found.lateral
     if now.stage == HsicStage.READY:
-        lateral = clamp(lateral, -gain.heading * gain.steepest, gain.heading * gain.steepest)
+        lateral = clamp(lateral, -gain.heading * gain.max_approach_heading, gain.heading * gain.max_approach_heading)
     line = lateral + gain.heading * now.direction * now.found.heading
     if mode in (SteerMode.BANG_BANG, SteerMode.EXTREMUM_HOLD):
-        line = SHARPNESS * line
+        line = SWITCHING_SLOPE * line
     if mode == SteerMode.STRONG_PD:
-        line = gain.strengthened * line
+        line = gain.gain_boost * line
     if mode == SteerMode.PID:
         line = line + gain.integral * now.integral
     return clamp(-line, -lock, lock)
@@ -55,7 +55,7 @@ def speed(mode: int, found: Errors, gain: HsicGains) -> float:
     if mode == SpeedMode.STAND:
         return 0.0
     if mode == SpeedMode.FAST:
-        return gain.fast
+        return gain.max_speed
     if mode == SpeedMode.APPROACH:
-        return clamp(gain.approach * abs(found.ahead), gain.creep, gain.fast)
-    return gain.slow
+        return clamp(gain.approach * abs(found.ahead), gain.min_speed, gain.max_speed)
+    return gain.corrective_speed

@@ -55,7 +55,7 @@ def hsic_outputs(state: HsicState, params: HsicSystemParams) -> HsicOutput:
         brake_request=brake,
         phase=state.phase,
         reason=state.reason,
-        shifts=state.shifts,
+        manoeuvres=state.manoeuvres,
         reference=to_world(state.course.goal, state.frame),
         lateral_error=state.found.lateral,
         heading_error=state.found.heading,

@@ -19,7 +19,7 @@ from modelkit.signal import Role, Signal, Subset
 
 PAPER = "HSIC paper"
 HOUSE = "project default; the source states none"
-DEGREE = pi / 180.0
+RAD_PER_DEGREE = pi / 180.0
 
 
 class HsicSlot(NamedTuple):
@@ -37,27 +37,27 @@ class HsicThresholds(NamedTuple):
     """When a state counts as aligned, near, reached, parked."""
 
     aligned: Annotated[float, Signal("rad", "heading error below which the car is aligned", 1e-3, 1.5, HOUSE)] = (
-        5.0 * DEGREE
+        5.0 * RAD_PER_DEGREE
     )
-    turned: Annotated[float, Signal("rad", "heading error that ends an arc", 1e-4, 1.5, HOUSE)] = 0.4 * DEGREE
+    turned: Annotated[float, Signal("rad", "heading error that ends an arc", 1e-4, 1.5, HOUSE)] = 0.4 * RAD_PER_DEGREE
     near: Annotated[float, Signal("m", "distance below which the key point counts as near", 1e-3, 20.0, HOUSE)] = 0.8
     reached: Annotated[float, Signal("m", "distance at which a key point is reached", 1e-4, 1.0, HOUSE)] = 0.01
     ready_heading: Annotated[float, Signal("rad", "heading error accepted at the ready point", 1e-4, 0.5, HOUSE)] = (
-        1.0 * DEGREE
+        1.0 * RAD_PER_DEGREE
     )
     ready_lateral: Annotated[float, Signal("m", "lateral error accepted at the ready point", 1e-3, 2.0, HOUSE)] = 0.1
-    retreat: Annotated[float, Signal("m", "distance reversed for another approach", 0.1, 20.0, HOUSE)] = 3.0
+    retry_distance: Annotated[float, Signal("m", "distance reversed for another approach", 0.1, 20.0, HOUSE)] = 3.0
     parked_heading: Annotated[float, Signal("rad", "largest heading error of a parked car", 1e-4, 0.5, PAPER)] = (
-        5.0 * DEGREE
+        5.0 * RAD_PER_DEGREE
     )
     parked_lateral: Annotated[float, Signal("m", "largest lateral error of a parked car", 1e-4, 1.0, PAPER)] = 0.1
     shuffle_share: Annotated[
         float, Signal("1", "fraction of the parked limits at which the in-slot shuffle ends", 0.01, 1.0, HOUSE)
     ] = 0.6
-    wheel: Annotated[
+    steering_angle_reached: Annotated[
         float,
         Signal("rad", "steering-wheel error within which the requested angle counts as reached", 1e-4, 1.0, HOUSE),
-    ] = 2.0 * DEGREE
+    ] = 2.0 * RAD_PER_DEGREE
 
 
 class HsicGains(NamedTuple):
@@ -70,14 +70,14 @@ class HsicGains(NamedTuple):
     integral: Annotated[
         float, Signal("1/m3", "integral over the travelled distance, lateral error to curvature", 0.0, 100.0, HOUSE)
     ] = 0.1
-    steepest: Annotated[
+    max_approach_heading: Annotated[
         float, Signal("rad", "maximum heading of the approach to the ready point's line", 0.01, 1.0, HOUSE)
-    ] = 4.5 * DEGREE
-    strengthened: Annotated[float, Signal("1", "factor on both gains while the error grows", 1.0, 10.0, HOUSE)] = 2.0
-    fast: Annotated[float, Signal("m/s", "speed far from the key point", 0.01, 3.0, HOUSE)] = 0.8
-    slow: Annotated[float, Signal("m/s", "speed while the heading error is large", 0.01, 3.0, HOUSE)] = 0.35
+    ] = 4.5 * RAD_PER_DEGREE
+    gain_boost: Annotated[float, Signal("1", "factor on both gains while the error grows", 1.0, 10.0, HOUSE)] = 2.0
+    max_speed: Annotated[float, Signal("m/s", "speed far from the key point", 0.01, 3.0, HOUSE)] = 0.8
+    corrective_speed: Annotated[float, Signal("m/s", "speed while the heading error is large", 0.01, 3.0, HOUSE)] = 0.35
     approach: Annotated[float, Signal("1/s", "speed per distance near the key point", 0.01, 10.0, HOUSE)] = 1.0
-    creep: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.12
+    min_speed: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.12
 
 
 class HsicParams(NamedTuple):
@@ -98,7 +98,7 @@ class HsicSystem(IntEnum):
 class HsicThresholdsShared(Protocol):
     """Those of the thresholds of every system that it has."""
 
-    lost_lateral: float
+    abort_lateral_error: float
     standstill: float
 
 

@@ -59,7 +59,7 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, car: Car, p
         points = key_points(pose, params.slot, car, course.points.radius)
         if points.found:
             return Course(HsicStage.TURN_IN, points, points.p2, way=-1)
-    farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)
+    farther = Pose(p1.x + threshold.retry_distance, p1.y, 0.0)
     return _go(course, HsicStage.READY, farther if at_p1 else p1, True, pose)
 
 

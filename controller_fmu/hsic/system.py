@@ -20,7 +20,7 @@ from modelkit.car import largest_curvature
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-LOST = 3.0
+ABORT_ERROR_FACTOR = 3.0
 """A key point's axis may be this many times farther off than a path before the car counts as lost."""
 
 
@@ -34,7 +34,7 @@ class HsicState(NamedTuple):
     course: Course = Course()
     direction: int = 1
     """Direction last driven, +1 forward."""
-    shifts: int = 0
+    manoeuvres: int = 0
     counted: int = 0
     """Direction of the manoeuvre counted last; 0: none yet."""
     characteristic: int = 0
@@ -68,8 +68,8 @@ def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams
     expected = expected_in(state.phase, state.direction)
     wheel = steering_wheel_angle(state.angle, state.frame.mirror, params)
     monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
-    reason = reason_to_fail(monitor, inputs, expected, state.running_ns, state.shifts, params)
-    lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
+    reason = reason_to_fail(monitor, inputs, expected, state.running_ns, state.manoeuvres, params)
+    lost = abs(state.found.lateral) > ABORT_ERROR_FACTOR * params.threshold.abort_lateral_error
     if reason == Reason.NONE and state.course.stage != HsicStage.READY and lost:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
@@ -122,7 +122,9 @@ def _driven(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt
     now = Situation(course.stage, direction, found, integral)
     angle = _front_wheels(steer_mode, now, 1.0 / course.points.radius, params)
     off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))
-    hold = (course.hold or direction != state.direction) and not (standing and off <= hsic.threshold.wheel)
+    hold = (course.hold or direction != state.direction) and not (
+        standing and off <= hsic.threshold.steering_angle_reached
+    )
     still = hold or turning or course.done
     phase = HsicPhase.STRAIGHTEN if course.done else HsicPhase.PRE_STEER if still else HsicPhase.PATH_TRACKING
     counted = _counted(state, course.stage, phase, direction)
@@ -130,7 +132,7 @@ def _driven(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt
         phase=phase,
         course=course._replace(hold=hold),
         direction=direction,
-        shifts=state.shifts + 1 if counted != state.counted else state.shifts,
+        manoeuvres=state.manoeuvres + 1 if counted != state.counted else state.manoeuvres,
         counted=counted,
         characteristic=characteristic,
         integral=clamp(integral, -1.0, 1.0),
@@ -158,7 +160,7 @@ def _straightened(state: HsicState, inputs: ParkingInput, params: HsicSystemPara
     phase = HsicPhase.STRAIGHTEN
     reason = Reason.NONE
     still = abs(inputs.measured_speed) <= params.threshold.standstill
-    if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.wheel:
+    if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.steering_angle_reached:
         near = is_parked(state.pose, 1.0, params.hsic)
         phase = HsicPhase.PARKED if near else HsicPhase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET

@@ -45,7 +45,7 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
         brake_request=not driving and not manual and state != ParkingState.TAKEOVER,
         phase=PHASE_OF_STATE[state],
         reason=memory.reason,
-        shifts=memory.progress.manoeuvres,
+        manoeuvres=memory.progress.manoeuvres,
         reference=memory.progress.reference,
         lateral_error=memory.progress.lateral_error,
         heading_error=memory.progress.heading_error,

@@ -82,7 +82,7 @@ class ParkingOutput(NamedTuple):
     brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=ParkingPhase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
-    shifts: Annotated[
+    manoeuvres: Annotated[
         int, Signal("1", "number of manoeuvres so far; the first reverse motion counts as one"), Role.LOCAL
     ] = 0
     reference: Annotated[Pose, Role.LOCAL, Group("reference point of the path beside the rear-axle midpoint")] = Pose()

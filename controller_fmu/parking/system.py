@@ -132,9 +132,9 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel
+    straight = abs(wheel) <= params.threshold.steering_angle_reached
     rolls_after = progress.upcoming.standstill.after if memory.state == ParkingState.STEERING else 0.0
-    tolerance = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
+    tolerance = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolls_after)
     blocked = memory.verdict.is_blocked
     stop = stopping_distance(abs(speed), params.drive.brake_delay, params.drive.brake_deceleration)
     lost = abs(progress.lateral_error) > params.monitor.corridor

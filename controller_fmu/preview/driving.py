@@ -49,7 +49,7 @@ def driving_sample(state: DrivingState, inputs: SystemInput, params: PreviewSyst
     preview, command = preview_step(
         state.preview, inputs.odometry, inputs.measured_speed, params.car.cg_to_rear, params.preview, dt_ns * 1e-9
     )
-    if abs(preview.sight.y_l) > params.threshold.lost_lateral:
+    if abs(preview.sight.y_l) > params.threshold.abort_lateral_error:
         return DrivingState(PreviewPhase.FAILED, Reason.LEFT_PATH, preview)
     phase = PreviewPhase.STRAIGHTEN if command.finished else PreviewPhase.PATH_TRACKING
     return DrivingState(phase, Reason.NONE, preview, command.front_wheel_angle, command.force)

@@ -51,7 +51,7 @@ class RoadPiece(NamedTuple):
     curvature: Annotated[float, Signal("1/m", "curvature, left positive", -10.0, 10.0)] = 0.0
 
 
-ROAD = (
+DEFAULT_ROAD = (
     RoadPiece(100.0, 0.0),
     RoadPiece(50.0 * pi, -0.01),
     RoadPiece(100.0, 0.0),
@@ -73,7 +73,7 @@ class PreviewParams(NamedTuple):
     method: Annotated[int, Signal("1", "one or two preview points", states=Method), Role.FIXED] = Method.DUAL
     camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera), Role.FIXED] = Camera.KINEMATICS
     rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable), Role.FIXED] = RuleTable.SYMMETRIC
-    road: Annotated[tuple[RoadPiece, ...], Role.FIXED] = ROAD
+    road: Annotated[tuple[RoadPiece, ...], Role.FIXED] = DEFAULT_ROAD
     set_speed: Annotated[float, Signal("m/s", "speed on straights", 0.1, 40.0, PAPER)] = 8.3
     safe_acceleration: Annotated[
         float, Signal("m/s2", "a in the safe speed sqrt(a / |kappa|)", 0.01, 10.0, PAPER + ", (3)")
@@ -140,7 +140,7 @@ class PreviewCar(SteeredCar, Protocol):
 class PreviewThresholds(Protocol):
     """What it has of the thresholds."""
 
-    lost_lateral: float
+    abort_lateral_error: float
     standstill: float
 
 

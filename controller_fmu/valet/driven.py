@@ -170,7 +170,7 @@ def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetSta
 def _set_out(state: ValetState) -> ValetState:
     """Return the valet that begins to drive; a change of direction is a shift, but for driving forward at first."""
     direction = sign(state.path.pieces[state.piece].way)
-    shifts = state.shifts
+    manoeuvres = state.manoeuvres
     if direction != state.direction:
-        shifts = shifts + 1 if shifts > 0 or direction < 0.0 else shifts
-    return state._replace(direction=direction, shifts=shifts)
+        manoeuvres = manoeuvres + 1 if manoeuvres > 0 or direction < 0.0 else manoeuvres
+    return state._replace(direction=direction, manoeuvres=manoeuvres)

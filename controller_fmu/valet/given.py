@@ -2,7 +2,15 @@
 
 import math
 
-from controller_fmu.common.told import AT_THE_ROAD, ECHOES, WELL_IN, SlotKind, ToldSlot, depth_of, is_usable_slot
+from controller_fmu.common.external_slot import (
+    AT_THE_ROAD,
+    MIN_CONTRADICTING_ECHOES,
+    WELL_IN,
+    ExternalSlot,
+    SlotKind,
+    depth_of,
+    is_usable_slot,
+)
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
@@ -15,7 +23,7 @@ ROOM = 0.3
 """A slot is wider, or along the road longer, than the car by this [m]."""
 
 
-def as_parameter(told: ToldSlot, slot: GivenSlot) -> GivenSlot:
+def as_parameter(told: ExternalSlot, slot: GivenSlot) -> GivenSlot:
     """Return the slot that is told, or that of the parameters if none is; its depth too where that is not told."""
     if told.kind == SlotKind.NONE:
         return slot
@@ -23,7 +31,7 @@ def as_parameter(told: ToldSlot, slot: GivenSlot) -> GivenSlot:
     return GivenSlot(told.kind, told.ax, told.ay, told.bx, told.by, told.heading, depth if depth < DEEP else slot.depth)
 
 
-def gap_told(told: ToldSlot, params: ValetParams) -> Gap:
+def gap_told(told: ExternalSlot, params: ValetParams) -> Gap:
     """Return the slot that is told as a gap; a car stands in its middle, or flush with A and B if it has no end."""
     lengthwise = told.kind == SlotKind.PARALLEL
     body = body_of(params)
@@ -41,7 +49,7 @@ def gap_told(told: ToldSlot, params: ValetParams) -> Gap:
     return made._replace(width=dx * e.x + dy * e.y, front=middle + back, depth=depth - back if depth < DEEP else DEEP)
 
 
-def told_reason(store: PlanStore, told: ToldSlot, params: ValetParams) -> int:
+def told_reason(store: PlanStore, told: ExternalSlot, params: ValetParams) -> int:
     """Return why a slot that is told cannot be one, ``NONE`` if it may be."""
     if not is_usable_slot(told):
         return Reason.BAD_INPUT
@@ -59,7 +67,7 @@ def told_reason(store: PlanStore, told: ToldSlot, params: ValetParams) -> int:
     for place in range(2 * HEARD):
         if store.heard_count[place] > 0 and _is_well_in(store, place, gap, deep):
             count = count + store.heard_count[place]
-    return Reason.SLOT_CONTRADICTED if count >= ECHOES else Reason.NONE
+    return Reason.SLOT_CONTRADICTED if count >= MIN_CONTRADICTING_ECHOES else Reason.NONE
 
 
 def _is_well_in(store: PlanStore, place: int, gap: Gap, deep: float) -> bool:

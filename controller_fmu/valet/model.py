@@ -45,7 +45,7 @@ def valet_step(
     samples = 0
     if state.next_sample_ns < end_ns:
         samples = (end_ns - state.next_sample_ns + period_ns - 1) // period_ns
-    valet = state.valet._replace(told=inputs.told)
+    valet = state.valet._replace(told=inputs.external_slot)
     for _ in range(samples):
         valet = valet_sample(store, valet, inputs, params, period_ns)
     return ValetModelState(end_ns, state.next_sample_ns + samples * period_ns, valet), valet_outputs(valet, params)

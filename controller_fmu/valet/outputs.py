@@ -46,7 +46,7 @@ def valet_outputs(state: ValetState, params: ValetParams) -> ValetOutput:
         brake_request=not driving and not taken and not seeks,
         phase=PHASE_OF_STEP[state.step],
         reason=state.reason,
-        shifts=state.shifts,
+        manoeuvres=state.manoeuvres,
         reference=state.tracked.reference,
         lateral_error=state.tracked.lateral_error,
         heading_error=state.tracked.heading_error,

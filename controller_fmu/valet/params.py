@@ -4,14 +4,14 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.params import LimitParams, ThresholdParams
-from controller_fmu.common.told import SlotKind
 from controller_fmu.planning.task import Corner
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import ANYWHERE, Pose
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 MAP_CORNERS = 360
 
 
@@ -120,13 +120,13 @@ class ValetParams(NamedTuple):
 
     system: Annotated[int, Signal("1", "which system", states=ValetSystem)] = ValetSystem.VALET
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
-    car: Annotated[Car, Group("the car it thinks it drives")] = Car()
+    car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
     target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE), Role.TUNABLE] = Pose(
         -7.608, -3.056, 0.0
     )
     slot: Annotated[GivenSlot, Role.TUNABLE] = GivenSlot()
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
-    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(shifts=30, duration=600.0)
+    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(manoeuvres=30, duration=600.0)
     search: ValetSearchParams = ValetSearchParams()
     plan: Annotated[ValetPlanParams, Role.TUNABLE] = ValetPlanParams()
     drive: Annotated[ValetDriveParams, Role.TUNABLE] = ValetDriveParams()

@@ -1,6 +1,6 @@
 """The valet plans: its search at each sample, for the goal it was told or the slot it found."""
 
-from controller_fmu.common.told import SlotKind, is_usable_slot
+from controller_fmu.common.external_slot import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import (
     NO_ROOM,

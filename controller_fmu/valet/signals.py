@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
-from controller_fmu.common.told import ToldSlot
+from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import Odometry, Reason
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
@@ -97,13 +97,15 @@ class ValetOutput(NamedTuple):
     advised_speed: AdvisedSpeed = 0.0
     speed_control_active: SpeedControlActive = False
     speed_request: SpeedRequest = 0.0
-    force_control_active: Annotated[bool, Signal("1", "force_request holds: never")] = False
-    force_request: Annotated[float, Signal("N", "drive and brake force asked for: none")] = 0.0
+    force_control_active: Annotated[bool, Signal("1", "force_request applies: never")] = False
+    force_request: Annotated[float, Signal("N", "requested drive and brake force: none")] = 0.0
     brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=ValetPhase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
-    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
-    reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()
+    manoeuvres: Annotated[
+        int, Signal("1", "number of manoeuvres so far; the first reverse motion counts as one"), Role.LOCAL
+    ] = 0
+    reference: Annotated[Pose, Role.LOCAL, Group("reference point of the path beside the rear-axle midpoint")] = Pose()
     lateral_error: Annotated[float, Signal("m", "left of the path"), Role.LOCAL] = 0.0
     heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
         0.0
@@ -120,8 +122,8 @@ class ValetInput(NamedTuple):
     driver_takeover: DriverTakeover = False
     vehicle_fault: VehicleFaultShown = 0
     ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+        Annotated[float, Signal("m", "measured range: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
     ] = (5.0,) * 12
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
-    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
+    external_slot: Annotated[ExternalSlot, Group("a slot from outside: a camera, a map, a test bench")] = ExternalSlot()

@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.common.told import SlotKind
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.in_gap import along_of

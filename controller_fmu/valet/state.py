@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from controller_fmu.common.told import ToldSlot
+from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import (
     Path,
@@ -51,7 +51,7 @@ class ValetState(NamedTuple):
     tracked: Tracked = Tracked()
     early: float = 0.0
     """The car has been found to stop so much [m] before where it should."""
-    shifts: int = 0
+    manoeuvres: int = 0
     direction: float = 0.0
     """Last driven, 0: not yet."""
     seen: tuple[Corner, ...] = (Corner(),) * SEEN_CORNERS
@@ -62,7 +62,7 @@ class ValetState(NamedTuple):
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
     search: Search = Search()
-    told: ToldSlot = ToldSlot()
+    told: ExternalSlot = ExternalSlot()
     """The slot from outside, as it is told now."""
     nearby: Nearby = Nearby()
     """What is heard on the way into a slot that was found."""

@@ -1,8 +1,8 @@
 """The valet at one sample: look for a slot, plan a bounded amount, set the wheel, drive a piece, halt, plan anew."""
 
 from controller_fmu.common.chart import bit
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
@@ -49,7 +49,7 @@ def valet_sample(
     clocks = watch(state.watch, command, inputs, params, dt_ns)
     reason = state.reason
     if reason == Reason.NONE:
-        reason = reason_to_fail(clocks, inputs, state.step, state.shifts, params)
+        reason = reason_to_fail(clocks, inputs, state.step, state.manoeuvres, params)
     state = state._replace(watch=clocks, reason=reason)
     step = step_transition(state.step, guards_of(store, state, inputs, params))
     return moved_on(store, state, step, inputs, params)
@@ -62,9 +62,9 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ValetInput, params: V
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel and not waits(state, inputs.odometry, params)
+    straight = abs(wheel) <= params.threshold.steering_angle_reached and not waits(state, inputs.odometry, params)
     rolls_after = rest_before(state.path, state.piece, params).after if state.step == Step.SET_WHEEL else 0.0
-    turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
+    turned = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
     lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
     lost = lost or state.nearby.in_the_way

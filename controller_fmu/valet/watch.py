@@ -33,7 +33,7 @@ def watch(state: Watch, command: Command, inputs: ValetInput, params: ValetParam
     wheel = at_rest(angle, state.wheel.steering)
     if command.step != Step.PLAN:
         rate = params.car.steering.rate_limit
-        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.wheel_off, rate, dt_ns)
+        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.steering_tracking_error, rate, dt_ns)
     moves = command.step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     return Watch(
         waiting=state.waiting + dt_ns if still and moves and not command.blocked else 0,
@@ -53,7 +53,7 @@ def fault_of(inputs: ValetInput) -> int:
     return Reason.VEHICLE_FAULT if inputs.vehicle_fault != 0 else Reason.NONE
 
 
-def reason_to_fail(state: Watch, inputs: ValetInput, step: int, shifts: int, params: ValetParams) -> int:
+def reason_to_fail(state: Watch, inputs: ValetInput, step: int, manoeuvres: int, params: ValetParams) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     limit = params.limit
     fault = fault_of(inputs)
@@ -61,12 +61,12 @@ def reason_to_fail(state: Watch, inputs: ValetInput, step: int, shifts: int, par
         return fault
     if state.frozen * 1e-9 > limit.pose_frozen:
         return Reason.POSE_FROZEN
-    if has_failed(state.wheel, limit.wheel_fault):
+    if has_failed(state.wheel, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
     if state.stopping * 1e-9 > limit.stopping:
         return Reason.NOT_STOPPING
-    if state.waiting * 1e-9 > limit.patience:
+    if state.waiting * 1e-9 > limit.driver_response_timeout:
         return Reason.STEERING_FAULT if step != Step.DRIVE else Reason.NOT_MOVING
-    if shifts > limit.shifts:
+    if manoeuvres > limit.manoeuvres:
         return Reason.TOO_MANY_SHIFTS
     return Reason.TIMEOUT if state.running * 1e-9 > limit.duration else Reason.NONE

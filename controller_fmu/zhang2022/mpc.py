@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
-from controller_fmu.zhang2022.qp import STAGES, Initial, Stages, Status, solve
+from controller_fmu.zhang2022.qp import MAX_STAGES, Initial, Stages, Status, solve
 from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 from modelkit.maths import clamp, is_finite
 
 NO_STAGE = HorizonStage(0.0, 0.0, 0.0, 0.0, 0.0)
-SLOWEST = 0.2
+MIN_PREDICTION_SPEED = 0.2
 """Speed assumed where the car stands [m/s]: without motion nothing can be predicted."""
 
 
@@ -45,7 +45,7 @@ def steer(
     angle = clamp(steering.angle, -car.angle_limit, car.angle_limit)
     stages = prediction(path, reference, speed, car, p)
     now = Initial(reference.lateral_error, reference.heading_error, angle)
-    found = solve(now, stages, weights(car, p), p.tolerance, p.cap)
+    found = solve(now, stages, weights(car, p), p.tolerance, p.max_iterations)
     solved = found.status == Status.SOLVED and is_finite(found.nodes[0].u)
     rate = found.nodes[0].u / p.step_time if solved else steering.rate
     return FrontWheels(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
@@ -59,10 +59,10 @@ def turned(steering: FrontWheels, car: FrontAxle, dt: float) -> FrontWheels:
 
 def prediction(path: QuinticPath, reference: Reference, speed: float, car: FrontAxle, p: MpcParams) -> Stages:
     """Return the stages of the horizon, linearised where the car will be on the path at this speed (reverse)."""
-    step = -max(SLOWEST, -speed) * p.step_time
+    step = -max(MIN_PREDICTION_SPEED, -speed) * p.step_time
     x = reference.pose.x
-    stages: Stages = (NO_STAGE,) * STAGES
-    for number in range(STAGES):
+    stages: Stages = (NO_STAGE,) * MAX_STAGES
+    for number in range(MAX_STAGES):
         stages = stages[1:] + (_stage(path, x, step, number, car, p),)
         x = _onward(path, x, step)
     return stages
@@ -90,7 +90,7 @@ def weights(car: FrontAxle, p: MpcParams) -> Weights:
         p.heading,
         p.angle,
         p.increment,
-        p.softness,
+        p.slack_weight,
         p.corridor,
         car.angle_limit,
         car.rate_limit * p.step_time,

@@ -59,7 +59,7 @@ def zhang_outputs(state: ZhangState, params: ZhangSystemParams) -> ZhangOutput:
     force = state.pid.force if driving else 0.0
     speed = state.set_speed if driving else 0.0
     brake = not driving and state.phase != ZhangPhase.TAKEOVER
-    shifts = 0 if state.phase == ZhangPhase.STANDBY else 1
+    manoeuvres = 0 if state.phase == ZhangPhase.STANDBY else 1
     return ZhangOutput(
         steering_wheel_request=wheel if active else 0.0,
         steering_active=active,
@@ -70,7 +70,7 @@ def zhang_outputs(state: ZhangState, params: ZhangSystemParams) -> ZhangOutput:
         brake_request=brake,
         phase=state.phase,
         reason=state.reason,
-        shifts=shifts,
+        manoeuvres=manoeuvres,
         reference=to_world(state.reference.pose, state.frame),
         lateral_error=state.reference.lateral_error,
         heading_error=state.reference.heading_error,

@@ -54,13 +54,13 @@ class MpcParams(NamedTuple):
     angle: Annotated[float, Signal("1", "weight on front-wheel angle off the path's [1/rad2]", 0.0, 1e6, HOUSE)] = 0.1
     increment: Annotated[float, Signal("1", "weight on an angle increment [1/rad2]", 1e-9, 1e6, HOUSE)] = 1.0
     corridor: Annotated[float, Signal("m", "soft limit on lateral error", 1e-3, 10.0, HOUSE)] = 0.05
-    softness: Annotated[float, Signal("1", "weight of the slack on the lateral limit [1/m2]", 1e-3, 1e6, HOUSE)] = (
+    slack_weight: Annotated[float, Signal("1", "weight of the slack on the lateral limit [1/m2]", 1e-3, 1e6, HOUSE)] = (
         1000.0
     )
     tolerance: Annotated[
         float, Signal("1", "complementarity gap at which the solver stops", 1e-15, 1e-2, HOUSE), Role.FIXED
     ] = 1e-10
-    cap: Annotated[int, Signal("1", "maximum iterations of the solver", 1, 200, HOUSE), Role.FIXED] = 40
+    max_iterations: Annotated[int, Signal("1", "maximum iterations of the solver", 1, 200, HOUSE), Role.FIXED] = 40
 
 
 class PidParams(NamedTuple):

@@ -16,14 +16,14 @@ from controller_fmu.zhang2022.quintic import (
 from controller_fmu.zhang2022.time_quintic import knot_at, time_quintic
 from modelkit.vocabulary import Pose
 
-CANDIDATES = 9
-ROUNDS = 4
+RADII_PER_ROUND = 9
+REFINEMENT_ROUNDS = 4
 """Each looks at radii four times as close to each other as the one before."""
-SAMPLES = 32
+CURVATURE_SAMPLES = 32
 FOOT_STEPS = 5
 STEEP = 1e9
 """Curvature [1/m] said of what is no path y(x)."""
-STEEPEST = 1.2
+MAX_PATH_HEADING = 1.2
 """Largest heading of a path given as y(x) [rad]."""
 
 
@@ -99,11 +99,11 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     low = min(widest, radius)
     high = widest
     tried = PathTried()
-    for _ in range(ROUNDS):
+    for _ in range(REFINEMENT_ROUNDS):
         tried = _first_within(start, low, high, curvature_limit)
         if tried.path.status == PathStatus.FOUND:
             return tried.path
-        step = (high - low) / (CANDIDATES - 1.0)
+        step = (high - low) / (RADII_PER_ROUND - 1.0)
         low = max(low, tried.radius - step)
         high = min(high, tried.radius + step)
     return tried.path
@@ -113,10 +113,10 @@ def _first_within(start: Pose, low: float, high: float, curvature_limit: float) 
     """Return the path of the smallest of some radii that keeps the limit, or the refusal and the best radius."""
     smallest_peak = 1e9
     best = low
-    for candidate in range(CANDIDATES):
-        share = candidate / (CANDIDATES - 1.0)
+    for candidate in range(RADII_PER_ROUND):
+        share = candidate / (RADII_PER_ROUND - 1.0)
         arcs = arc_line_arc(start.x, start.y, low + share * (high - low))
-        if arcs.line >= 0.0 and 0.0 < arcs.angle < STEEPEST:
+        if arcs.line >= 0.0 and 0.0 < arcs.angle < MAX_PATH_HEADING:
             path = through(start, arcs)
             if path.largest_curvature <= curvature_limit:
                 return PathTried(path, arcs.radius)
@@ -197,11 +197,11 @@ def length_of(path: QuinticPath) -> float:
 def piece_length(piece: Quintic) -> float:
     """Return the length of a quintic [m]."""
     total = 0.0
-    for sample in range(SAMPLES + 1):
-        slope = shape(piece, piece.x0 + piece.length * sample / SAMPLES).slope
-        weight = 1.0 if sample in (0, SAMPLES) else 4.0 if sample % 2 == 1 else 2.0
+    for sample in range(CURVATURE_SAMPLES + 1):
+        slope = shape(piece, piece.x0 + piece.length * sample / CURVATURE_SAMPLES).slope
+        weight = 1.0 if sample in (0, CURVATURE_SAMPLES) else 4.0 if sample % 2 == 1 else 2.0
         total = total + weight * math.sqrt(1.0 + slope * slope)
-    return total * piece.length / (3.0 * SAMPLES)
+    return total * piece.length / (3.0 * CURVATURE_SAMPLES)
 
 
 def final_time(length: float, speed: float, up: float, down: float) -> float:
@@ -230,10 +230,10 @@ def nearest(path: QuinticPath, pose: Pose) -> Reference:
 
 
 def largest_curvature(piece: Quintic) -> float:
-    """Return the largest curvature of a quintic [1/m], of ``SAMPLES`` places along it."""
+    """Return the largest curvature of a quintic [1/m], of ``CURVATURE_SAMPLES`` places along it."""
     largest = 0.0
-    for sample in range(SAMPLES + 1):
-        largest = max(largest, abs(shape(piece, piece.x0 + piece.length * sample / SAMPLES).curvature))
+    for sample in range(CURVATURE_SAMPLES + 1):
+        largest = max(largest, abs(shape(piece, piece.x0 + piece.length * sample / CURVATURE_SAMPLES).curvature))
     return largest
 
 

@@ -32,9 +32,9 @@ ACCELERATIONS = 5
 """Accelerations tried at both ends each, from none."""
 ACCELERATION_STEP = 3.0
 """In the same measure."""
-PLACES = 13
+MEETING_POINTS = 13
 """Meeting points tried in each direction."""
-HEADINGS = 13
+HEADING_CANDIDATES = 13
 """Headings tried at each."""
 NEAREST, FARTHEST = 0.2, 0.7
 """Meeting points tried, as shares of the way from the target to the start, along and across."""
@@ -99,12 +99,12 @@ def _joined(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds)
     seen = math.atan2(start.y, start.x)
     best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
     blocked = False
-    for along in range(PLACES):
-        x = start.x * (NEAREST + (FARTHEST - NEAREST) * along / (PLACES - 1.0))
-        for across in range(PLACES):
-            y = start.y * (NEAREST + (FARTHEST - NEAREST) * across / (PLACES - 1.0))
-            for number in range(HEADINGS):
-                heading = seen * (FLATTEST + (STEEPEST_SHARE - FLATTEST) * number / (HEADINGS - 1.0))
+    for along in range(MEETING_POINTS):
+        x = start.x * (NEAREST + (FARTHEST - NEAREST) * along / (MEETING_POINTS - 1.0))
+        for across in range(MEETING_POINTS):
+            y = start.y * (NEAREST + (FARTHEST - NEAREST) * across / (MEETING_POINTS - 1.0))
+            for number in range(HEADING_CANDIDATES):
+                heading = seen * (FLATTEST + (STEEPEST_SHARE - FLATTEST) * number / (HEADING_CANDIDATES - 1.0))
                 slope = math.tan(heading)
                 if largest_curvature(quintic(0.0, 0.0, 0.0, x, y, slope)) <= best.largest_curvature:
                     path = joined_at(start, x, y, slope)

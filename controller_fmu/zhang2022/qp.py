@@ -25,8 +25,8 @@ from controller_fmu.zhang2022.qp_stage import (
 )
 from modelkit.maths import clamp
 
-STAGES = 12
-CONSTRAINTS = 6.0 * STAGES
+MAX_STAGES = 12
+CONSTRAINT_COUNT = 6.0 * MAX_STAGES
 FIRST_GAP = 1000.0
 """Multiplier times slack at the start: large against any weight, found to need the fewest iterations."""
 SMALLEST_SLACK = 0.1
@@ -65,7 +65,7 @@ class Initial(NamedTuple):
 class Solution(NamedTuple):
     """Last iterate and how it came about."""
 
-    nodes: Nodes = (ORIGIN,) * STAGES
+    nodes: Nodes = (ORIGIN,) * MAX_STAGES
     status: int = Status.NOT_RUN
     iterations: int = 0
     gap: float = 0.0
@@ -113,7 +113,7 @@ def _gap(nodes: Nodes) -> float:
     total = 0.0
     for node in nodes:
         total = total + complementarity(node)
-    return total / CONSTRAINTS
+    return total / CONSTRAINT_COUNT
 
 
 def _worst(nodes: Nodes, w: Weights) -> float:
@@ -147,7 +147,7 @@ def _inside(slack: float) -> float:
 
 
 def _start(now: Node, q: Stages, w: Weights) -> Nodes:
-    nodes: Nodes = (now,) * STAGES
+    nodes: Nodes = (now,) * MAX_STAGES
     before = now
     for stage in q:
         before = first_node(before, stage, w)
@@ -156,9 +156,9 @@ def _start(now: Node, q: Stages, w: Weights) -> Nodes:
 
 
 def _backward(n: Nodes, q: Stages, w: Weights, mu: float) -> Gains:
-    gains: Gains = (NO_GAIN,) * STAGES
+    gains: Gains = (NO_GAIN,) * MAX_STAGES
     value = NOTHING
-    for index in range(STAGES - 1, -1, -1):
+    for index in range(MAX_STAGES - 1, -1, -1):
         back = backward(value, n[index], q[index], w, mu)
         value = back.value
         gains = (back.gain,) + gains[:-1]
@@ -167,8 +167,8 @@ def _backward(n: Nodes, q: Stages, w: Weights, mu: float) -> Gains:
 
 def _forward(k: Gains, n: Nodes, q: Stages, w: Weights, mu: float) -> Nodes:
     step = ORIGIN
-    steps: Nodes = (ORIGIN,) * STAGES
-    for index in range(STAGES):
+    steps: Nodes = (ORIGIN,) * MAX_STAGES
+    for index in range(MAX_STAGES):
         step = forward(step, k[index], n[index], q[index], w, mu)
         steps = steps[1:] + (step,)
     return steps

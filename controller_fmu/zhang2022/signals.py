@@ -69,7 +69,7 @@ class ZhangOutput(NamedTuple):
     brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=ZhangPhase)] = 0
     reason: ReasonTold = 0
-    shifts: Shifts = 0
+    manoeuvres: Shifts = 0
     reference: ReferencePose = Pose()
     lateral_error: LateralError = 0.0
     heading_error: HeadingError = 0.0

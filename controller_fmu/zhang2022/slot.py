@@ -8,7 +8,7 @@ from controller_fmu.zhang2022.path import QuinticPath, at
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
-SAMPLES = 80
+PATH_SAMPLES = 80
 """Poses looked at along a path."""
 
 
@@ -29,8 +29,8 @@ def is_path_clear(path: QuinticPath, car: Outline, slot: SlotBounds) -> bool:
     """Return whether the car keeps clear on the whole path; true where the slot is unknown."""
     if not slot.known:
         return True
-    for number in range(SAMPLES + 1):
-        x = path.start.x * number / SAMPLES
+    for number in range(PATH_SAMPLES + 1):
+        x = path.start.x * number / PATH_SAMPLES
         point = at(path, x)
         if not is_pose_clear(Pose(x, point.y, math.atan(point.slope)), car, slot):
             return False

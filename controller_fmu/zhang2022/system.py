@@ -21,7 +21,7 @@ from modelkit.vocabulary import Pose
 
 STOPPING_SHARE = 0.7
 """Share of the ramp planned for stopping: what is left makes up for the lag of the speed."""
-CREEP = 0.03
+FINAL_SPEED = 0.03
 """Speed [m/s] left at the target, so that it is reached."""
 
 
@@ -63,7 +63,7 @@ def zhang_sample(state: ZhangState, inputs: ParkingInput, params: ZhangSystemPar
     expected = expected_in(state.phase)
     monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, expected, state.running_ns, 1, params)
-    if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.lost_lateral:
+    if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.abort_lateral_error:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, ZhangPhase.FAILED, reason)
@@ -119,7 +119,7 @@ def _driven(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSy
         solved_ns = 0
     arrived = pose.x <= zhang.stop_distance
     room = 2.0 * STOPPING_SHARE * zhang.ramp * max(0.0, pose.x)
-    wanted = -min(zhang.speed, math.sqrt(room) + CREEP)
+    wanted = -min(zhang.speed, math.sqrt(room) + FINAL_SPEED)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
     return state._replace(
@@ -138,8 +138,8 @@ def _straightened(state: ZhangState, inputs: ParkingInput, pose: Pose, params: Z
     phase = ZhangPhase.STRAIGHTEN
     reason = Reason.NONE
     still = abs(inputs.measured_speed) <= limit.standstill
-    if still and abs(inputs.steering_wheel_angle) <= limit.wheel:
-        near = abs(pose.y) <= limit.miss_lateral and abs(pose.heading) <= limit.miss_heading
+    if still and abs(inputs.steering_wheel_angle) <= limit.steering_angle_reached:
+        near = abs(pose.y) <= limit.final_lateral_error and abs(pose.heading) <= limit.final_heading_error
         phase = ZhangPhase.PARKED if near else ZhangPhase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
     return state._replace(

@@ -26,16 +26,16 @@ from fmus.places import CACHE
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor, flattener, variables
 
-DRAWN = 9000
+SAMPLED_POINTS = 9000
 """Points drawn around the defaults times parameters moved there."""
-WAYS = 4
+MOVES_PER_POINT = 4
 """How often all are moved from each of those."""
-SMALL = 4
+MAX_JOINT_FIELDS = 4
 """Fields of a group that act together where one of them decides about a mode: a ratio, an angle, a rate."""
 SUFFIX = ".dependencies.json"
-KEPT = 8
+CACHED_RESULTS = 8
 """Results of older sources that stay in the cache."""
-MOSTLY = 0.9
+DEFAULT_SAMPLE_FRACTION = 0.9
 """Share of the draws that lie around the default; the others are ends of the range."""
 REACH = {"m": 5.0}
 """How far from its default a point is drawn in this unit, at least; in others 0.5."""
@@ -60,7 +60,9 @@ def initial_dependencies(model: Model) -> Found:
         }
     model = model.started({})
     key = _hash(model)[:32]
-    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), KEPT)
+    path = kept_file(
+        CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), CACHED_RESULTS
+    )
     found: Found = json.loads(path.read_bytes())
     return found
 
@@ -81,7 +83,7 @@ def find_dependencies(model: Model) -> Found:
         causes = {parameter for parameter, outputs in acting.items() if _thing(item.name) in outputs}
         decide = deciding if causes else set()
         groups = {_group(parameter) for parameter in causes - deciding} | {
-            group for group in map(_group, decide) if sizes[group] <= SMALL
+            group for group in map(_group, decide) if sizes[group] <= MAX_JOINT_FIELDS
         }
         groups -= {""}
         causes |= decide
@@ -123,7 +125,7 @@ def _acting(model: Model, known: list[Variable], free: list[int]) -> dict[str, s
     for point in _drawn_points(known, free, model.name):
         expected = start(point)
         ways = {place: _ways(known[place], point[place]) for place in free}
-        for number in range(WAYS):
+        for number in range(MOVES_PER_POINT):
             search(point, expected, {place: way[number % len(way)] for place, way in ways.items()}, free)
     return acting
 
@@ -158,7 +160,7 @@ def _drawn_points(known: list[Variable], free: list[int], seed: str) -> Iterator
     """Return points around the defaults; of the arrays, half are left as they are in each."""
     draw = random.Random(seed)
     arrays = sorted({item.name.split("[")[0] for item in known if "[" in item.name})
-    for _ in range(DRAWN // max(1, len(free))):
+    for _ in range(SAMPLED_POINTS // max(1, len(free))):
         left = tuple(f"{array}[" for array in arrays if draw.random() < 0.5)
         point = [item.start for item in known]
         for place in free:
@@ -182,7 +184,7 @@ def _drawn(item: Variable, draw: random.Random) -> Any:
         return item.start
     if others:
         return others[int((share + 1.0) / 2.0 * len(others)) % len(others)]
-    if abs(share) > MOSTLY:
+    if abs(share) > DEFAULT_SAMPLE_FRACTION:
         return item.signal.low if share < 0.0 else item.signal.high
     width = max(0.5 * abs(item.start), REACH.get(item.signal.unit, 0.5))
     return _within(item, item.start + share * width)

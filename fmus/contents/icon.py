@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-SIZE = 96
-SAMPLES = 2
+ICON_PIXELS = 96
+SUBPIXELS = 2
 CLEAR = (255.0, 255.0, 255.0, 0.0)
 EDGE = (60.0, 64.0, 72.0, 255.0)
 PAPER = (250.0, 250.0, 248.0, 255.0)
@@ -25,7 +25,7 @@ def icon(name: str, inputs: int, outputs: int) -> bytes:
     hue = hashlib.sha256(name.encode()).digest()[0] / 256.0
     red, green, blue = (round(255 * part) for part in colorsys.hls_to_rgb(hue, 0.42, 0.65))
     pixels = _averaged(_points((red, green, blue, 255.0), min(inputs, 5), min(outputs, 5)))
-    header = struct.pack(">IIBBBBB", SIZE, SIZE, 8, 6, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", ICON_PIXELS, ICON_PIXELS, 8, 6, 0, 0, 0)
     rows = b"".join(b"\0" + row.tobytes() for row in pixels)
     chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows, 9)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, content) for kind, content in chunks)
@@ -37,17 +37,21 @@ def _chunk(kind: bytes, content: bytes) -> bytes:
 
 def _averaged(points: Array) -> NDArray[np.uint8]:
     """Return the mean colour of each pixel, shape (SIZE, SIZE, 4), from its SAMPLES by SAMPLES points."""
-    cells = points.reshape(SIZE, SAMPLES, SIZE, SAMPLES, 4).swapaxes(1, 2).reshape(SIZE, SIZE, SAMPLES * SAMPLES, 4)
+    cells = (
+        points.reshape(ICON_PIXELS, SUBPIXELS, ICON_PIXELS, SUBPIXELS, 4)
+        .swapaxes(1, 2)
+        .reshape(ICON_PIXELS, ICON_PIXELS, SUBPIXELS * SUBPIXELS, 4)
+    )
     opacity = cells[..., 3:].sum(axis=2)
     mean = (cells[..., :3] * cells[..., 3:]).sum(axis=2) / np.maximum(opacity, 1.0)
     colour = np.where(opacity > 0.0, mean, CLEAR[:3])
-    pixels: NDArray[np.uint8] = np.rint(np.concatenate([colour, opacity / SAMPLES**2], axis=2)).astype(np.uint8)
+    pixels: NDArray[np.uint8] = np.rint(np.concatenate([colour, opacity / SUBPIXELS**2], axis=2)).astype(np.uint8)
     return pixels
 
 
 def _points(ink: tuple[float, ...], inputs: int, outputs: int) -> Array:
     """Return the colour of each point, rows from the top, shape (SIZE * SAMPLES, SIZE * SAMPLES, 4)."""
-    places = (np.arange(SIZE * SAMPLES) + 0.5) / (SIZE * SAMPLES)
+    places = (np.arange(ICON_PIXELS * SUBPIXELS) + 0.5) / (ICON_PIXELS * SUBPIXELS)
     x, y = np.meshgrid(places, places)
     across, down = np.abs(x - 0.5) - 0.29, np.abs(y - 0.5) - 0.34
     distance = np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)) + np.minimum(np.maximum(across, down), 0.0)

@@ -8,10 +8,10 @@ from fmus.native.compilers import FLAGS
 from fmus.native.sources import translated
 from modelkit.model import Model
 
-SHOWN = 4
+PRINTED_OUTPUTS = 4
 """Outputs the example prints."""
-PRINTS = 20
-SPAN = 10.0
+PRINTED_ROWS = 20
+EXAMPLE_DURATION = 10.0
 """Simulated time of the example [s], unless the model's own experiment is shorter."""
 EXAMPLE = """/* Steps the model {name} with the inputs at their start values, and prints outputs with all their digits.
  *
@@ -71,9 +71,9 @@ def write_c_library(model: Model, folder: Path) -> list[Path]:
 def example(model: Model) -> str:
     """Return main.c."""
     known = members(model)
-    outputs = [item for item in known if item.group == "outputs" and item.kind is float][:SHOWN]
+    outputs = [item for item in known if item.group == "outputs" and item.kind is float][:PRINTED_OUTPUTS]
     inputs = [item for item in known if item.group == "inputs"]
-    steps = round(min(SPAN, model.stop_time) / model.step_size)
+    steps = round(min(EXAMPLE_DURATION, model.stop_time) / model.step_size)
     return EXAMPLE.format(
         name=model.name,
         store="" if model.store is None else "&model.store, ",
@@ -81,7 +81,7 @@ def example(model: Model) -> str:
         step=model.step_size,
         step_ns=round(model.step_size * 1e9),
         steps=steps,
-        every=max(1, steps // PRINTS),
+        every=max(1, steps // PRINTED_ROWS),
         prints="\n".join(f'            printf("  {item.name} %.17g", model.{item.path});' for item in outputs),
         inputs=f"        /* and here to set inputs, such as model.{inputs[0].path} */\n" if inputs else "",
     )

@@ -36,7 +36,7 @@ STORE = """#define FMU_STORE(model) &(model)->store,
 """
 """In the unit of a model that has work arrays."""
 SUFFIX = ".c.json"
-KEPT = 4
+CACHED_TRANSLATIONS = 4
 """Translations of older sources that stay in the cache."""
 SHARED_FUNCTIONS = "-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"
 """For a shared library: its functions have no prefix."""
@@ -66,7 +66,7 @@ def translated(model: Model, live: Slice | None = None) -> Translation:
     key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
     name = model.name if live is None else f"{model.name}_slice"
     made = lambda: json.dumps(translate(model, live)._asdict()).encode()  # noqa: E731
-    path = kept_file(CACHE, name, key, SUFFIX, made, KEPT)
+    path = kept_file(CACHE, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
     return Translation(**json.loads(path.read_bytes()))
 
 

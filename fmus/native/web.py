@@ -19,7 +19,7 @@ from fmus.places import CACHE, LIBRARIES
 from modelkit.connections import connections, part_of
 from modelkit.model import Chart, Model
 
-KEPT = 4
+CACHED_MODULES = 4
 """Names of modules of older sources that stay in the cache."""
 MODEL_UNIT = """{declared}#define LIBRARY_EXPORT __attribute__((unused)) static
 {unit}
@@ -71,7 +71,7 @@ def live_library(
     packages = [Path(str(package.__file__)).parent for model in models.values() for package in model.sources()]
     words = [compiler.recipe(target), *told(further), *(word for model in models.values() for word in words_of(model))]
     sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
-    of_c = kept_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), KEPT)
+    of_c = kept_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), CACHED_MODULES)
     return kept_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, made)
 
 

@@ -25,7 +25,7 @@ LIBRARIES: set[str] = set()
 """Paths of PythonFMU's libraries of the instances so far."""
 FREED_AFTER_EXCEPTION = 2
 """``sys.getrefcount`` of a slave that only ``KEPT`` and the call itself know: its spare reference is used up."""
-FREED = FREED_AFTER_EXCEPTION + 1
+FREED_WITH_REFERENCE = FREED_AFTER_EXCEPTION + 1
 """The same with the spare reference left."""
 
 
@@ -52,9 +52,9 @@ def keep(slave: Any) -> None:
 def _take_back() -> None:
     for place in reversed(range(len(KEPT))):
         count = sys.getrefcount(KEPT[place])
-        if count <= FREED:
+        if count <= FREED_WITH_REFERENCE:
             freed = KEPT.pop(place)
-            if count == FREED:
+            if count == FREED_WITH_REFERENCE:
                 _add_reference(freed.log_queue, -1)
                 _add_reference(freed, -1)
 

@@ -27,10 +27,10 @@ INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = range(4)
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 MISSING: dict[type, Any] = {float: math.nan, int: 0, bool: False}
 MOST_PICKERS = 256
-NANOSECONDS = 1e9
+NS_PER_SECOND = 1e9
 CLOCK_TOLERANCE = 1000
 """Between the importer's clock and the FMU's, and of a last step beyond the stop time [ns]."""
-LATEST = 4e9
+MAX_TIME = 4e9
 """Latest time that an importer may name [s]: the same as in the native FMUs."""
 
 
@@ -81,13 +81,13 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
     ) -> None:
         """Take the start time, and the stop time if there is one: no step goes beyond it."""
-        if not abs(start_time) <= LATEST:
+        if not abs(start_time) <= MAX_TIME:
             self._refuse(f"start time {start_time:g} s is no time")
         elif stop_time is not None and not stop_time >= start_time:
             self._refuse(f"stop time {stop_time:g} s is not after start time {start_time:g} s")
         else:
             self.values[self.layout.time] = start_time
-            self.stop_ns = None if stop_time is None or stop_time > LATEST else round(stop_time * NANOSECONDS)
+            self.stop_ns = None if stop_time is None or stop_time > MAX_TIME else round(stop_time * NS_PER_SECOND)
 
     def enter_initialization_mode(self) -> None:
         """Make the outputs valid."""
@@ -114,13 +114,13 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
                 return False
             layout, values = self.layout, self.values
             end_time = current_time + step_size
-            end_ns = round(end_time * NANOSECONDS)
-            dt_ns = end_ns - round(current_time * NANOSECONDS)
+            end_ns = round(end_time * NS_PER_SECOND)
+            dt_ns = end_ns - round(current_time * NS_PER_SECOND)
             if not step_size > 0.0:
                 self._error(f"communication step of {step_size} s: expected a positive number")
                 return False
             if self.stop_ns is not None and end_ns - CLOCK_TOLERANCE > self.stop_ns:
-                stop_time = self.stop_ns / NANOSECONDS
+                stop_time = self.stop_ns / NS_PER_SECOND
                 self._error(f"fmi2DoStep: the step to {end_time:.9f} s is beyond the stop time {stop_time:.9f} s")
                 return False
             if dt_ns <= 0:  # over before the clock's next nanosecond: a master that adds up t += h makes one at the end

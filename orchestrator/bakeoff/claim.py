@@ -24,11 +24,11 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.confidence import wilson
 
-SPEED = 0.8
+DRIVER_SPEED = 0.8
 """Speed the driver means [m/s]."""
 FASTEST, SLOWEST = 1.0, -0.5
 """Uniform relative error of the speed driven."""
-WOBBLE = 0.3
+MAX_SPEED_OSCILLATION = 0.3
 """Largest amplitude of its swing [m/s], uniform from 0."""
 SYSTEMS = ("ntbptcwpt", "ntbpt")
 STEERING = {"30 deg/s": "guo2015-case4", "105 deg/s": "guo2015-case4-105"}
@@ -38,7 +38,7 @@ LIMITS = {"Guo 2015": "guo2015", "GB/T 41630": "gbt41630"}
 """The sets of limits that a success is judged by."""
 SHOWN = "GB/T 41630"
 """What a success is judged by in the picture."""
-BINS = 24
+HISTOGRAM_BINS = 24
 
 
 class Setting(NamedTuple):
@@ -78,16 +78,16 @@ def study(drivers: int = 10_000, seed: int = 1) -> Study:
     rng = np.random.default_rng(seed)
     drawn = {
         ERROR: rng.uniform(SLOWEST, FASTEST, drivers),
-        "vehicle.driver.wobble": rng.uniform(0.0, WOBBLE, drivers),
-        "vehicle.driver.wobble_period": rng.uniform(1.0, 6.0, drivers),
+        "vehicle.driver.speed_oscillation_amplitude": rng.uniform(0.0, MAX_SPEED_OSCILLATION, drivers),
+        "vehicle.driver.speed_oscillation_period": rng.uniform(1.0, 6.0, drivers),
         "vehicle.driver.reaction_delay": rng.uniform(0.1, 0.6, drivers),
     }
     samples = {find_field(key, scenario): values for key, values in drawn.items()}
     content = {
         "name": "guo2015-claim",
         "title": "Path tracking with and without point tracking under driver speed errors",
-        "description": f"The driver means {SPEED} m/s, is off by {SLOWEST:+.0%} to {FASTEST:+.0%}, swings by up to "
-        f"{WOBBLE} m/s, and ignores the prompt to slow down.",
+        "description": f"The driver aims at {DRIVER_SPEED} m/s, errs by {SLOWEST:+.0%} to {FASTEST:+.0%}, "
+        f"oscillates by up to {MAX_SPEED_OSCILLATION} m/s, and ignores the prompt to slow down.",
         "map": {"x": ERROR, "y": "steering", "split": "system"},
         "drivers": drivers,
         "seed": seed,
@@ -132,16 +132,17 @@ def report(table: Table, folder: Path) -> int:
 
 def draw(columns: Mapping[str, Any], file: Path) -> Path:
     """Write the success rate over the mean speed driven; return the path."""
-    speed = SPEED * (1.0 + columns[ERROR])
-    edges = np.linspace(speed.min(), speed.max(), BINS + 1)
-    place = np.clip(np.digitize(speed, edges) - 1, 0, BINS - 1)
+    speed = DRIVER_SPEED * (1.0 + columns[ERROR])
+    edges = np.linspace(speed.min(), speed.max(), HISTOGRAM_BINS + 1)
+    place = np.clip(np.digitize(speed, edges) - 1, 0, HISTOGRAM_BINS - 1)
     won = (columns["outcome"] == "parked") & columns[WITHIN.format(SHOWN)]
     figure, axis = plt.subplots(figsize=(7.0, 4.4), layout="constrained")
     for steering in STEERING:
         for system in SYSTEMS:
             mine = (columns["system"] == system) & (columns["steering"] == steering)
             rate = [
-                100.0 * won[mine & (place == k)].mean() if (mine & (place == k)).any() else np.nan for k in range(BINS)
+                100.0 * won[mine & (place == k)].mean() if (mine & (place == k)).any() else np.nan
+                for k in range(HISTOGRAM_BINS)
             ]
             style = "o-" if steering.startswith("30 ") else "o:"
             label = f"{system}, wheels {steering}"
@@ -157,5 +158,5 @@ def draw(columns: Mapping[str, Any], file: Path) -> Path:
 
 
 def _scenario(name: str, system: str) -> Scenario:
-    sets = [f"vehicle.driver.profile[1].speed={SPEED}", "vehicle.driver.profile[2].at=1e9"]
-    return load_scenario(name, [*sets, f"controller.system={system}", "stop_time=120", "limits=[gbt41630]"])
+    sets = [f"vehicle.driver.profile[1].speed={DRIVER_SPEED}", "vehicle.driver.profile[2].at=1e9"]
+    return load_scenario(name, [*sets, f"controller.system={system}", "stop_time=120", "requirements=[gbt41630]"])

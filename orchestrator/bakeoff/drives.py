@@ -11,8 +11,8 @@ REFUSED = "no_path"
 """Why a drive is not begun at all."""
 EXACT = "5 cm and 1 deg"
 RESULTS = (
-    *("outcome", WITHIN.format(EXACT), "reason", "time", "shifts"),
-    *("final.lateral_error", "final.heading_error", "min_clearance", "steering_effort"),
+    *("outcome", WITHIN.format(EXACT), "reason", "time", "manoeuvres"),
+    *("final.lateral_error", "final.heading_error", "min_clearance", "steering_travel"),
 )
 """Columns of the table that a drive is made from, beside its labels."""
 
@@ -35,7 +35,7 @@ class Drive(NamedTuple):
     """Why it is not parked; empty if it is."""
     time: float
     """From the first instant (the assist: from the driver's confirmation) until the car stands parked."""
-    shifts: int
+    manoeuvres: int
     lateral: float
     heading: float
     clearance: float

@@ -69,7 +69,7 @@ def scenario_of(controller: str, slot: float, car: str, body: str, start: str, d
         name = key.removeprefix("vehicle.")
         vehicle[name] = vehicle[name] * value if name == "car.steering.ratio" else value
         if name.startswith("odometry"):
-            vehicle["odometry.perfect"] = False
+            vehicle["odometry.ideal"] = False
     return base.model_copy(update={"vehicle": vehicle})
 
 
@@ -96,7 +96,9 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **told}
-    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls}).with_limits(limits)
+    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls}).with_requirements(
+        limits
+    )
 
 
 def _scene(slot: float, line: float) -> dict[str, float]:

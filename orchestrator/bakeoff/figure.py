@@ -23,7 +23,7 @@ COLOURS = {
     "hsic": "#2b8a5a",
     "apa": "#8a4fa8",
 }
-BAR = 0.14
+BAR_WIDTH = 0.14
 """Width of a bar; the slots lie 1 apart."""
 
 
@@ -59,15 +59,21 @@ def _shares(axis: Axes, found: list[Drive]) -> None:
             mine = [item for item in found if item.controller == name and item.slot == slot]
             if not mine:
                 continue
-            x = place + BAR * (number - 0.5 * (len(CONTROLLERS) - 1))
+            x = place + BAR_WIDTH * (number - 0.5 * (len(CONTROLLERS) - 1))
             parked, exact, refused = (
                 100.0 * sum(wins) / len(mine)
                 for wins in zip(*((item.parked, item.exact, item.why == REFUSED) for item in mine), strict=True)
             )
-            axis.bar(x, parked, color=COLOURS[name], width=0.9 * BAR)
-            axis.bar(x, exact, color="#222222", alpha=0.35, width=0.4 * BAR)
+            axis.bar(x, parked, color=COLOURS[name], width=0.9 * BAR_WIDTH)
+            axis.bar(x, exact, color="#222222", alpha=0.35, width=0.4 * BAR_WIDTH)
             axis.bar(
-                x, refused, bottom=100.0 - refused, color="none", edgecolor="#bbbbbb", hatch="////", width=0.9 * BAR
+                x,
+                refused,
+                bottom=100.0 - refused,
+                color="none",
+                edgecolor="#bbbbbb",
+                hatch="////",
+                width=0.9 * BAR_WIDTH,
             )
     axis.set_xticks(range(len(SLOTS)), [f"{slot:g} m" for slot in SLOTS])
     exact = f"{100.0 * _limit(0):g} cm, {np.degrees(_limit(1)):g} deg"

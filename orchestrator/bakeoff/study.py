@@ -38,11 +38,11 @@ FOOTNOTES = (
     "1 cm of sensor noise, and parks from where it likes. Its time counts from the driver's confirmation, its "
     "clearance with the way past the slot; it chooses its place along the slot, so errors along it are not compared.",
 )
-HEADS = ("slot [m]", "controller", "runs", "refused", "parked", "exact", "time [s]", "shifts", "lateral [cm]")
+HEADS = ("slot [m]", "controller", "runs", "refused", "parked", "exact", "time [s]", "manoeuvres", "lateral [cm]")
 MORE = ("heading [deg]", "clearance [m]", "wheel [turns]", "why not")
 MEDIANS: tuple[Callable[[Drive], float], ...] = (
     lambda item: item.time,
-    lambda item: item.shifts,
+    lambda item: item.manoeuvres,
     lambda item: 100.0 * abs(item.lateral),
     lambda item: math.degrees(abs(item.heading)),
     lambda item: item.clearance,

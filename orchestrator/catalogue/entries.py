@@ -41,7 +41,7 @@ class Clause(_CataloguePart):
     """Step tests of this room that have to pass."""
     outcome: list[Outcome] = []
     """What the runs may come to; empty: anything."""
-    limits: dict[str, list[str] | Literal["all"]] = {}
+    requirements: dict[str, list[str] | Literal["all"]] = {}
     """Shipped set of limits -> ids in it; the numbers stand there alone."""
     not_tested: str = ""
     """Why nothing here tests it."""
@@ -50,19 +50,19 @@ class Clause(_CataloguePart):
     def _whole(self) -> "Clause":
         if bool(self.scenarios or self.step_tests) == bool(self.not_tested):
             raise BadInput("expected either what tests it, or not_tested: why nothing does", key=self.id)
-        if self.scenarios and not (self.outcome or self.limits):
+        if self.scenarios and not (self.outcome or self.requirements):
             raise BadInput("expected an outcome or limits of its scenarios", key=self.id)
         _known(self.id, self.scenarios, scenario_names(), "scenario")
         _known(self.id, self.step_tests, [path.stem for path in STEP_TESTS.glob("*.yaml")], "step test")
-        _known(self.id, list(self.limits), shipped("limits"), "set of limits")
-        for name, ids in self.limits.items():
+        _known(self.id, list(self.requirements), shipped("requirements"), "set of requirements")
+        for name, ids in self.requirements.items():
             if isinstance(ids, list):
                 _known(self.id, ids, [item.id for item in shipped_requirements(name)], f"limit of {name}")
         return self
 
-    def requirements(self) -> list[Requirement]:
+    def required_limits(self) -> list[Requirement]:
         """Return the limits that its runs have to keep."""
-        named = {name: ids if isinstance(ids, list) else [] for name, ids in self.limits.items()}
+        named = {name: ids if isinstance(ids, list) else [] for name, ids in self.requirements.items()}
         return [item for name, ids in named.items() for item in shipped_requirements(name, *ids)]
 
 

@@ -94,7 +94,7 @@ def _row(item: ClauseVerdict) -> str:
 def _tried(tried: ClauseRun) -> str:
     name = html.escape(tried.name)
     texts = [tried.error, *tried.missed, *(f"not measured: {name}" for name in tried.unmeasured)]
-    texts += [f"{check.id}: {sentence(check)}" for check in tried.checks if check.judged and check.passed]
+    texts += [f"{check.id}: {sentence(check)}" for check in tried.checks if check.evaluated and check.passed]
     found = "".join(f"<li>{html.escape(text)}</li>" for text in texts if text)
     outcome = html.escape(tried.outcome.replace("_", " "))
     return f'<li><a href="{name}/report.html">{name}</a> {outcome}<ul>{found}</ul></li>'

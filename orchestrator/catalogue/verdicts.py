@@ -111,12 +111,12 @@ def _stepped(name: str, tested: Tested) -> ClauseRun:
 
 
 def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
-    requirements = [*entry.requirements(), scenario.contact_rule]
+    requirements = [*entry.required_limits(), scenario.contact_rule]
     checks = judge(requirements, recording, facts_of(recording, scenario), scenario.file)
-    missed = [f"{check.id}: {sentence(check)}" for check in checks if check.judged and not check.passed]
+    missed = [f"{check.id}: {sentence(check)}" for check in checks if check.evaluated and not check.passed]
     if entry.outcome and outcome not in entry.outcome:
         missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), required {' or '.join(entry.outcome)}")
-    return ClauseRun(scenario.name, outcome, missed, [check.id for check in checks if not check.judged], checks)
+    return ClauseRun(scenario.name, outcome, missed, [check.id for check in checks if not check.evaluated], checks)
 
 
 def counts(verdicts: list[ClauseVerdict]) -> dict[Word, int]:

@@ -48,13 +48,13 @@ def run(arguments: argparse.Namespace) -> int:
     facts = facts_of(recording, scenario)
     checks = []
     for name in arguments.requirements:
-        file = find_file(name, "limits", "set of limits", Path.cwd())
+        file = find_file(name, "requirements", "set of requirements", Path.cwd())
         checks += judge(read_requirements(file), recording, facts, str(file))
     checks += judge([scenario.contact_rule], recording, facts, str(arguments.log))
     if arguments.junit:
         write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), facts.numbers["duration"])])
     missed = [check for check in checks if check.required and not check.passed]
-    unknown = sum(not check.judged for check in checks)
+    unknown = sum(not check.evaluated for check in checks)
     if arguments.json:
         data = [json.loads(check.model_dump_json()) for check in checks]
         print(json.dumps({"passed": not missed, "checks": data}, indent=2))

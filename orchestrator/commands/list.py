@@ -19,15 +19,15 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.limit_text import required_text
 
 EXAMPLES = """examples:
-  apa list                             scenarios, systems, cars, limits, studies
+  apa list                             scenarios, controllers, cars, requirements, studies
   apa list parameters steering         parameters with this word in name or meaning
   apa list parameters "controller.guo2015.*"
   apa list signals odometry --json
-  apa list limits gbt41630
+  apa list requirements gbt41630
   apa list runs                        runs in runs/, the latest first: time, scenario, changes, outcome
   apa list runs results --page         the same as a page results/index.html with pictures
 """
-KINDS = ("scenarios", "parameters", "signals", "systems", "limits", "runs")
+KINDS = ("scenarios", "parameters", "signals", "controllers", "requirements", "runs")
 Rows = list[dict[str, Any]]
 
 
@@ -67,16 +67,16 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _overview(as_json: bool) -> int:
     heads, scenarios = _scenarios(None)
-    names = {"cars": car_names(), "limits": _limit_names(), "studies": sorted([*study_names(), *STUDIES])}
+    names = {"cars": car_names(), "requirements": _requirement_sets(), "studies": sorted([*study_names(), *STUDIES])}
     if as_json:
-        print(json.dumps({"scenarios": scenarios, "systems": systems(), **names}, indent=2))
+        print(json.dumps({"scenarios": scenarios, "controllers": systems(), **names}, indent=2))
         return 0
     _print(heads, scenarios)
     out = console()
     print()
-    _print(*_systems(None))
+    _print(*_controllers(None))
     out.print(f"\ncars (--set car=NAME): {', '.join(names['cars'])}")
-    out.print(f"limits (apa list limits): {', '.join(names['limits'])}")
+    out.print(f"requirements (apa list requirements): {', '.join(names['requirements'])}")
     out.print(f"studies (apa sweep NAME): {', '.join(names['studies'])}")
     out.print("parameters and signals: apa list parameters PATTERN, apa list signals PATTERN", markup=False)
     return 0
@@ -84,22 +84,25 @@ def _overview(as_json: bool) -> int:
 
 def _scenarios(pattern: str | None) -> tuple[dict[str, str], Rows]:
     found = [load_scenario(name) for name in scenario_names()]
-    rows = [{"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in found]
-    heads = {"name": "scenario", "expect": "expect", "title": "title"}
+    rows = [
+        {"name": item.name, "title": item.title, "expected_outcome": item.expected_outcome, "file": item.file}
+        for item in found
+    ]
+    heads = {"name": "scenario", "expected_outcome": "expected outcome", "title": "title"}
     return heads, [row for row in rows if _has(pattern, row["name"], row["title"])]
 
 
-def _systems(pattern: str | None) -> tuple[dict[str, str], Rows]:
+def _controllers(pattern: str | None) -> tuple[dict[str, str], Rows]:
     rows = [{"name": name, "text": text} for name, text in systems().items()]
-    heads = {"name": "system (--set controller.system=NAME)", "text": "meaning"}
+    heads = {"name": "controller (--set controller.system=NAME)", "text": "meaning"}
     return heads, [row for row in rows if _has(pattern, row["name"], row["text"])]
 
 
-def _limits(pattern: str | None) -> tuple[dict[str, str], Rows]:
+def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
     heads = {"set": "set", "id": "id", "signal": "signal", "required": "required", "source": "source"}
     rows = []
-    for name in _limit_names():
-        for item in read_requirements(ROOM / "limits" / f"{name}.yaml"):
+    for name in _requirement_sets():
+        for item in read_requirements(ROOM / "requirements" / f"{name}.yaml"):
             if _has(pattern, name, item.id, item.signal):
                 rows.append(
                     {
@@ -116,7 +119,7 @@ def _limits(pattern: str | None) -> tuple[dict[str, str], Rows]:
 def _runs(folder: str | None) -> tuple[dict[str, str], Rows]:
     from orchestrator.report.found_runs import find_runs
 
-    heads = {"time": "time", "scenario": "scenario", "changed": "changed", "outcome": "outcome", "path": "path"}
+    heads = {"time": "time", "scenario": "scenario", "overrides": "overrides", "outcome": "outcome", "path": "path"}
     return heads, find_runs(Path(folder or RUNS))
 
 
@@ -140,16 +143,16 @@ LISTS = {
     "scenarios": _scenarios,
     "parameters": _variables("parameter"),
     "signals": _variables("output", "input"),
-    "systems": _systems,
-    "limits": _limits,
+    "controllers": _controllers,
+    "requirements": _requirements,
     "runs": _runs,
 }
 RUNS = "runs"
 """Where runs are unless a folder is named."""
 
 
-def _limit_names() -> list[str]:
-    return sorted(path.stem for path in (ROOM / "limits").glob("*.yaml"))
+def _requirement_sets() -> list[str]:
+    return sorted(path.stem for path in (ROOM / "requirements").glob("*.yaml"))
 
 
 def _has(pattern: str | None, *texts: str) -> bool:
@@ -159,7 +162,7 @@ def _has(pattern: str | None, *texts: str) -> bool:
 def _print(heads: dict[str, str], rows: Rows) -> None:
     table = Table(box=None, pad_edge=False)
     for key, head in heads.items():
-        table.add_column(escape(head), no_wrap=key not in ("title", "text", "range", "changed"), overflow="fold")
+        table.add_column(escape(head), no_wrap=key not in ("title", "text", "range", "overrides"), overflow="fold")
     for row in rows:
         many = f" to [{row['elements']}]" if row.get("elements", 1) > 1 else ""
         table.add_row(*(escape(f"{row[key]}{many if key == 'name' else ''}") for key in heads))

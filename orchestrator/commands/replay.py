@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(again.summary.as_json(), indent=2, allow_nan=False))
     else:
-        print_summary(again.summary, again.scenario.title, again.scenario.expect)
+        print_summary(again.summary, again.scenario.title, again.scenario.expected_outcome)
         print(f"results in {out}")
         changed = "" if again.same_sources else " (the models have changed since)"
         differs = f"differs from the table{changed}: {', '.join(again.different)}"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
   apa sweep guo2015-trial --set vehicle.body=single_track --json
-  apa sweep apa-grid --every 20                each 20th run of the parking assist's grid
+  apa sweep apa-grid --stride 20               each 20th run of the parking assist's grid
   apa sweep my-study.yaml --resume             go on after Ctrl-C, a kill or a power cut
   apa sweep my-study.yaml --fmus native        the same table from FMUs, only slower
   apa sweep my-study.yaml --dask               on a Dask cluster of this machine's own
@@ -54,11 +54,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: its own local workers, or a scheduler's"
     )
-    parser.add_argument("--workers", type=int, metavar="N", help="threads or processes (default: all cores)")
+    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads or processes (default: all cores)")
     parser.add_argument(
         "--chunk", type=int, metavar="N", help="runs per part; at most these are lost when the process is killed"
     )
-    parser.add_argument("--picture", type=Path, metavar="FILE", help="write the success map as a PNG, too")
+    parser.add_argument("--figure", type=Path, metavar="FILE", help="write the success map as a PNG, too")
     parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument(
         "--set",
@@ -69,8 +69,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--runs", type=int, metavar="N", help="sample N runs: the n of a study's samples")
     parser.add_argument("--seed", type=int, metavar="S", help="the study's own seed, as --set seed=S")
-    parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N of the study")
-    parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run of the study")
+    parser.add_argument("--offset", type=int, default=0, metavar="N", help="begin at run N of the study")
+    parser.add_argument("--stride", type=int, default=1, metavar="N", help="only each N-th run of the study")
     parser.add_argument(
         "--explain", action="store_true", help="print what code made for the study omits of the models; run nothing"
     )
@@ -81,28 +81,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run what is missing, write table and page, print the outcome. Returns 0, or what the study makes of its table;
     130 if interrupted."""
-    for name in ("workers", "chunk", "every"):
+    for name in ("jobs", "chunk", "stride"):
         if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
             raise BadInput(f"{getattr(arguments, name)}: expected 1 or more", key=f"--{name}")
     try:
         from orchestrator.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
         raise BadInput(missing_package(error.name or "", "native,sweep")) from error
-    if arguments.first < 0:
-        raise BadInput(f"{arguments.first}: expected 0 or more", key="--first")
-    if arguments.picture is not None:
-        check_picture(arguments.picture)
+    if arguments.offset < 0:
+        raise BadInput(f"{arguments.offset}: expected 0 or more", key="--offset")
+    if arguments.figure is not None:
+        check_picture(arguments.figure)
     own = [f"{key}={getattr(arguments, key)}" for key in ("runs", "seed") if getattr(arguments, key) is not None]
     study = chosen_study(arguments.study, [*arguments.set, *own])
-    study = study._replace(design=study.design.part(arguments.first, arguments.every))
+    study = study._replace(design=study.design.part(arguments.offset, arguments.stride))
     if not len(study.design.seeds):
-        raise BadInput(f"{arguments.first}: the study has fewer runs", key="--first")
+        raise BadInput(f"{arguments.offset}: the study has fewer runs", key="--offset")
     if arguments.explain:
         return _explain(study)
     out: Path = arguments.out or Path("runs") / study.name
-    names = ("fmus", "dask", "workers", "chunk", "resume", "restart")
+    names = ("fmus", "dask", "chunk", "resume", "restart")
     with owned(out):
-        swept = sweep(study, out, Options(**{name: getattr(arguments, name) for name in names}))
+        swept = sweep(study, out, Options(workers=arguments.jobs, **{name: getattr(arguments, name) for name in names}))
         written = {} if swept.table is None else _write(swept.table, arguments)
         _tell(swept, written, arguments)
         if swept.not_run is not None:
@@ -184,13 +184,13 @@ def _report(name: str, table: Path, *, quiet: bool) -> int:
 def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
     """Write picture and page, as far as they are asked for; return what there is now."""
     written = {"table": table}
-    if arguments.picture is not None:
+    if arguments.figure is not None:
         from orchestrator.sweep.page.picture import draw_maps
         from orchestrator.sweep.table import Table
 
-        with verdict_stands(str(arguments.picture)):
-            draw_maps(Table(table), arguments.picture)
-            written["picture"] = arguments.picture
+        with verdict_stands(str(arguments.figure)):
+            draw_maps(Table(table), arguments.figure)
+            written["picture"] = arguments.figure
     if not arguments.no_page:
         from orchestrator.sweep.page.page import write_page
 

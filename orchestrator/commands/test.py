@@ -211,7 +211,7 @@ class Verdicts:
 def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
     foreign = foreign_of(arguments)
     files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
-    found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
+    found = [find_file(name, "requirements", "set of requirements", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
     return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=started_now())
 
@@ -235,7 +235,7 @@ def _row(tested: Tested) -> dict[str, Any]:
         "scenario": tested.scenario.name,
         "passed": tested.passed,
         "outcome": tested.summary.outcome if tested.summary else None,
-        "expected": tested.scenario.expect,
+        "expected": tested.scenario.expected_outcome,
         "error": tested.error,
         "could_not_run": tested.could_not_run,
         "left_out": tested.ignored,

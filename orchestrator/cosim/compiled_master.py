@@ -22,7 +22,7 @@ from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
 from orchestrator.cosim.master import End, Master, last_exchange
 from orchestrator.cosim.slave import Indices, all_values, places_of
 
-BLOCK = 250
+EXCHANGES_PER_CALL = 250
 """Exchanges per compiled call."""
 FETCH, SEND, STEP = 1, 2, 3
 
@@ -130,7 +130,7 @@ class _Plan:
         self._columns = np.argsort(order)
         """Place of a value in all ports -> its place in a row."""
         before = all_values(fmus)[order]
-        self.rows = np.full((BLOCK, len(before)), np.nan)
+        self.rows = np.full((EXCHANGES_PER_CALL, len(before)), np.nan)
         self._transfers = [_Transfers(group, begin) for group, begin in zip(groups, self._begins, strict=True)]
         self._slaves = (SlaveC * len(fmus))(*[self._slave(number, master) for number in range(len(fmus))])
         parts = [(link, number) for link in master.connections for number in range(len(fmus[link.target].sets))]
@@ -147,7 +147,7 @@ class _Plan:
     def advance(self, first: int) -> int:
         """Do a block of exchanges; return how many are in ``rows``."""
         run, rows = self._addresses
-        return int(self._call(run, first, BLOCK, rows))
+        return int(self._call(run, first, EXCHANGES_PER_CALL, rows))
 
     def check(self, number: int) -> None:
         """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
@@ -160,7 +160,7 @@ class _Plan:
             raise slave.no_step((number - 1) * self._step_ns, status)
 
     def _slave(self, number: int, master: Master) -> Any:
-        slave, every, begin = self._fmus[number], master.every[number], self._begins[2 * number]
+        slave, every, begin = self._fmus[number], master.decimation[number], self._begins[2 * number]
         sets, gets = self._transfers[2 * number : 2 * number + 2]
         written = [place for link in master.connections if link.target == number for place in link.target_places]
         held = np.setdiff1d(np.arange(len(slave.inputs.values)), written).astype(np.intp)

@@ -114,12 +114,12 @@ def manipulators(faults: list[Fault], master: Master, seed: int, file: object = 
     """Return a manipulator for every receiver of every fault. Raises ``BadInput`` for an unknown signal."""
     made: list[Manipulator] = []
     for count, slave, places in receivers(faults, master, file):
-        own_seed = seed * SEEDS + len(made)
+        own_seed = seed * SEED_STRIDE + len(made)
         made.append(_make(faults[count], slave, places, master.slaves, own_seed, file, f"faults[{count + 1}]"))
     return made
 
 
-SEEDS = 1000
+SEED_STRIDE = 1000
 """Seeds of the manipulators of a run: so many times its own, and their number."""
 
 
@@ -143,11 +143,11 @@ def _make(
     ports = slaves[slave].inputs
     where: tuple[Fault, int, Array, Indices] = (fault, slave, ports.values, np.array(places, dtype=np.intp))
     first = ports.variables[places[0]]
-    if fault.kind == "freeze":
+    if fault.kind == "stuck_at_last":
         return Freeze(*where)
     if fault.kind == "delay":
         return Delay(*where)
-    if fault.kind == "drop":
+    if fault.kind == "dropout":
         return Drop(*where, seed)
     if fault.kind == "noise":
         if any(ports.variables[place].kind is not float for place in places):

@@ -81,7 +81,7 @@ class Master:
         slaves: list[Slave],
         step_ns: int,
         stop_ns: int,
-        every: dict[str, int] | None = None,
+        decimation: dict[str, int] | None = None,
         connections: list[Connection] | None = None,
     ) -> None:
         self.slaves = slaves
@@ -89,7 +89,7 @@ class Master:
         """All inputs and outputs in one array."""
         self.step_ns = step_ns
         self.stop_ns = stop_ns
-        self.every = [(every or {}).get(slave.name, 1) for slave in slaves]
+        self.decimation = [(decimation or {}).get(slave.name, 1) for slave in slaves]
         self.connections = connect(slaves) if connections is None else connections
         """By equal names if nothing else is said."""
         self.manipulators: list[Manipulator] = []
@@ -119,7 +119,7 @@ class Master:
         count = 0
         while True:
             t_ns = min(count * self.step_ns, self.stop_ns)
-            pattern = tuple([count % every == 0 or count == last for every in self.every])
+            pattern = tuple([count % every == 0 or count == last for every in self.decimation])
             if pattern not in instants:
                 instants[pattern] = self._instant(pattern)
             due, links, faults, steps = instants[pattern]
@@ -164,7 +164,7 @@ class Master:
         due = [number for number, is_due in enumerate(pattern) if is_due]
         links = [self._link(link) for link in self.connections if link.target in due]
         faults = [fault for fault in self.manipulators if fault.slave in due]
-        steps = [(self.slaves[number], self.every[number] * self.step_ns) for number in due]
+        steps = [(self.slaves[number], self.decimation[number] * self.step_ns) for number in due]
         return _Instant([self.slaves[number] for number in due], links, faults, steps)
 
     def _link(self, link: Connection) -> Link:

@@ -37,7 +37,7 @@ from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOut
 
 BLUE, ASKED, GREEN, GREY, INK = LIGHT["run-a"], LIGHT["asked"], LIGHT["good"], "#8a8f98", "#22262c"
 DEGREE = math.radians(1.0)
-COMPRESSION = 3
+PNG_COMPRESSION = 3
 """Of the PNG file: a tenth larger than at best, in a fifth of the time."""
 TITLE, TITLE_AT = 12.5, 0.012
 """Size of the title's letters [pt]; where it begins, as a share of the width."""
@@ -59,12 +59,12 @@ STYLE: Any = {
     "axes.spines.right": False,
     "legend.frameon": False,
 }
-STILLS = 10
+MAX_MOVING_OUTLINES = 10
 """Of a thing that moves, one picture a second is drawn."""
-OUTLINES = 14
+PATH_OUTLINES = 14
 """About how many outlines are drawn along the path."""
 
-DPI = 120
+FIGURE_DPI = 120
 """Dots in an inch."""
 
 
@@ -76,7 +76,7 @@ RIBBON = (-0.125, -0.05)
 
 def picture(seen: Overview) -> bytes:
     """Return the overview picture of a run as a PNG file."""
-    file, how = BytesIO(), {"compress_level": COMPRESSION}
+    file, how = BytesIO(), {"compress_level": PNG_COMPRESSION}
     with mpl.rc_context(STYLE):
         canvas: Any = FigureCanvasAgg(overview(seen))  # savefig() goes through everything twice
         canvas.print_png(file, metadata={"Software": "apa-cosim"}, pil_kwargs=how)
@@ -87,7 +87,7 @@ def overview(seen: Overview, panels: tuple[Panel, ...] = PANELS) -> Figure:
     """Return the overview picture of a run."""
     columns = picture_columns(panels)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(BASE_WIDTH, picture_height(len(columns))), dpi=DPI)
+        figure = Figure(figsize=(BASE_WIDTH, picture_height(len(columns))), dpi=FIGURE_DPI)
         letters = string.ascii_lowercase
         _plan(figure.add_axes(raised(PLAN, len(columns))), letters[len(columns)], seen)
         pieces = _pieces(seen)
@@ -167,7 +167,7 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
     stills = [[still for still in thing.stills() if still.appear_at <= seen.t[-1]] for thing in seen.around.things]
-    draw_scene(axis, seen, [still for each in stills for still in (*each[:-1:STILLS], *each[-1:])])
+    draw_scene(axis, seen, [still for each in stills for still in (*each[:-1:MAX_MOVING_OUTLINES], *each[-1:])])
     x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
     _outlines(axis, seen.car, x, y, heading)
     axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
@@ -228,7 +228,7 @@ def _outlines(axis: Any, car: CarOutline, x: Array, y: Array, heading: Array) ->
     if way[-1] <= 0.0:
         rows = np.array([len(x) - 1])
     else:
-        rows = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], OUTLINES)).clip(0, len(x) - 1))
+        rows = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], PATH_OUTLINES)).clip(0, len(x) - 1))
         rows[-1] = len(x) - 1
     for number, row in enumerate(rows):
         share = (number + 1) / len(rows)

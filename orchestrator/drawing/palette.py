@@ -7,7 +7,7 @@ or idle. On a page of several runs a colour is a run. Text on a hue has a contra
 
 import json
 
-HUES = 8
+HUE_COUNT = 8
 LIGHT = {
     **{"good": "#1c7d43", "bad": "#ca3238", "warn": "#a35f00", "idle": "#676f77", "stop": "#c2453a"},
     **{"s0": "#06798e", "s1": "#c2255c", "s2": "#087c5b", "s3": "#9c36b5"},
@@ -36,7 +36,7 @@ RUNS = tuple(name for name in LIGHT if name.startswith("run-"))
 
 def role(state: str, value: float) -> str:
     """Return the name of the colour of a state."""
-    return STATES.get(state) or f"s{round(value) % HUES}"
+    return STATES.get(state) or f"s{round(value) % HUE_COUNT}"
 
 
 def css(colours: dict[str, str]) -> str:

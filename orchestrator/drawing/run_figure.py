@@ -21,7 +21,7 @@ LINES = (("#000000", "-"), ("#b0401a", "--"), ("#1f5fbf", "-."), ("#4d8a4d", ":"
 """Colour and dashes of one run after the other."""
 CM_PER_INCH = 2.54
 UNITS = {"cm": 1.0, "mm": 0.1, "in": CM_PER_INCH}
-WIDTH = 17.0
+DEFAULT_WIDTH_CM = 17.0
 """Default [cm]."""
 SETTINGS: dict[str, Any] = {
     "pdf.fonttype": 42,
@@ -42,7 +42,7 @@ DEFAULT_PANELS = ("path", "speed", "steering", "heading")
 def run_figure(
     runs: Sequence[tuple[str, Recording]],
     panels: Sequence[str] = DEFAULT_PANELS,
-    width: float = WIDTH,
+    width: float = DEFAULT_WIDTH_CM,
     style: str = "paper",
 ) -> Figure:
     """Return a matplotlib figure ``width`` [cm] wide of one or several (label, recording), overlaid.

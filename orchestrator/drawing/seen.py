@@ -10,8 +10,8 @@ from orchestrator.drawing.decimation import decimated
 from orchestrator.drawing.overview import Overview, Ribbon, Standing
 from orchestrator.drawing.panels import PICTURE_MODES, picture_signals
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import changes_text, shifts_text
+from orchestrator.text.quantities import RAD_PER_DEGREE
+from orchestrator.text.readable import changes_text, manoeuvres_text
 from orchestrator.verdict.geometry import (
     PLANNED,
     CarOutline,
@@ -41,7 +41,7 @@ def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> O
     vehicle = described(scenario, recording.parameters_of("vehicle"))
     around = Standing(
         things(vehicle),
-        [list(corners) for corners in scenario.polygons],
+        [list(corners) for corners in scenario.obstacles],
         kerbs(vehicle),
         None if scenario.slot is None else slot_box(scenario.slot),
         None if scenario.target is None else scenario.target.pose,
@@ -60,13 +60,13 @@ def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> O
 
 
 def _title(summary: Summary, scenario: Scenario) -> str:
-    final, changes, outcome = summary.final, changes_text(summary.changed), summary.outcome.replace("_", " ")
+    final, changes, outcome = summary.final, changes_text(summary.overrides), summary.outcome.replace("_", " ")
     name = f"{scenario.name} with {changes}" if changes else scenario.name
     text = f"{name}: {outcome} after {summary.duration:.1f} s"
     if not math.isfinite(final.lateral_error):
         return text
-    errors = f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
-    return f"{text}, {shifts_text(summary.shifts)}; {errors}"
+    errors = f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / RAD_PER_DEGREE:+.2f} deg"
+    return f"{text}, {manoeuvres_text(summary.manoeuvres)}; {errors}"
 
 
 def _ribbon(recording: Recording) -> Ribbon:

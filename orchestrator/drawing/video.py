@@ -22,7 +22,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.drawing.figure import BLUE, INK, STYLE, draw_scene, draw_thing
 from orchestrator.drawing.overview import Overview
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, place
 
 FRAME_RATES = {".mp4": 25.0, ".gif": 10.0}
@@ -173,7 +173,11 @@ class _Moving:
 
 
 def _curves() -> tuple[tuple[str, str, float], ...]:
-    return ("vehicle.speed", "speed [m/s]", 1.0), ("vehicle.steering_wheel_angle", "steering wheel [deg]", 1.0 / DEGREE)
+    return ("vehicle.speed", "speed [m/s]", 1.0), (
+        "vehicle.steering_wheel_angle",
+        "steering wheel [deg]",
+        1.0 / RAD_PER_DEGREE,
+    )
 
 
 def _wheel(at: tuple[float, float], steered: float) -> Array:

@@ -33,7 +33,7 @@ EXAMPLES = """examples:
 
 Shows the top view, the curves and the messages. Needs rerun-sdk: pip install 'apa-cosim[export]'
 """
-RATE = 20.0
+POSES_PER_SECOND = 20.0
 """Poses of the car per second in the top view."""
 DRIVEN_RATE = 4.0
 MAX_DRIVEN = 2000.0
@@ -139,7 +139,7 @@ def _moving(rr: Any, stream: Any, recording: Recording) -> None:
         return
     x, y, heading = (np.asarray(values) for values in pose)
     car = CarOutline.of(recording.parameters_of("vehicle")).outline()
-    rows = _rows(recording.t, RATE)
+    rows = _rows(recording.t, POSES_PER_SECOND)
     for row in rows:
         if not np.isfinite(x[row] + y[row] + heading[row]):
             continue

@@ -18,8 +18,10 @@ def parts_of(scenario: Scenario) -> dict[str, Model]:
 
     Raises ``BadInput`` if the scenario has what no such file can say: decimation or faults.
     """
-    if any(every != 1 for every in scenario.every.values()):
-        raise BadInput("a system file has one communication step for all; leave out", file=scenario.file, key="every")
+    if any(every != 1 for every in scenario.decimation.values()):
+        raise BadInput(
+            "a system file has one communication step for all; leave out", file=scenario.file, key="decimation"
+        )
     if scenario.system is not None:
         raise BadInput("exports are of our vehicle and controller; leave out", file=scenario.file, key="system")
     if scenario.faults:

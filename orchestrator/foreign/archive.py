@@ -13,8 +13,8 @@ from fmus.files import whole
 from fmus.places import DIST
 from orchestrator.text.errors import BadInput
 
-GIB = 1 << 30
-MOST_PACKED, MOST_UNPACKED, MOST_DESCRIPTION, MOST_FILES = GIB, 2 * GIB, 1 << 26, 50_000
+BYTES_PER_GIB = 1 << 30
+MOST_PACKED, MOST_UNPACKED, MOST_DESCRIPTION, MOST_FILES = BYTES_PER_GIB, 2 * BYTES_PER_GIB, 1 << 26, 50_000
 """Largest .fmu, all its files, its modelDescription.xml [bytes], and how many files."""
 DESCRIPTION = "modelDescription.xml"
 FOLDERS2 = {"linux": {"x86_64": "linux64", "aarch64": "aarch64-linux"}, "win32": {"AMD64": "win64"}}

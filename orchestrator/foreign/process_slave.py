@@ -35,9 +35,9 @@ from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 from orchestrator.text.printable import printable
 from orchestrator.text.quantities import MOST_WHOLE
 
-LAST = 2.0
+EXIT_TIMEOUT = 2.0
 """For a process to end that has nothing to say any more [s]."""
-LOOK = 0.05
+POLL_INTERVAL = 0.05
 """Between two looks at the clock [s]."""
 WIDE = ("UInt32", "Int64", "UInt64", "Enumeration")
 """Types of FMI 3.0 that hold more than 32-bit integers."""
@@ -338,14 +338,14 @@ class _Process:
         answers.register(self._pipes[1].fileno(), select.POLLIN)
 
         def wait() -> None:
-            while not answers.poll(1000.0 * LOOK):
+            while not answers.poll(1000.0 * POLL_INTERVAL):
                 if self._is_late:
                     raise EOFError
 
         return wait
 
     def _watch(self) -> None:
-        while not self._over.wait(LOOK):
+        while not self._over.wait(POLL_INTERVAL):
             if time.monotonic() > self._deadline:
                 self._is_late = True
                 end(self._child)
@@ -360,7 +360,7 @@ class _Process:
 
     def _gone(self, limit: float) -> _NoAnswerError:
         try:
-            code = self._child.wait(LAST)
+            code = self._child.wait(EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:
             end(self._child)
             code = self._child.wait()

@@ -27,7 +27,7 @@ DONE, REFUSED, MESSAGE = b"=", b"!", b"M"
 LOAD, PARAMETERS, INITIALIZE, START, OUTPUTS, INPUTS, STEP, HELD_STEP, CLOSE = (
     letter.encode() for letter in ("L", "P", "I", "R", "O", "N", "S", "s", "C")
 )
-MOST = 1 << 16
+READ_BLOCK_BYTES = 1 << 16
 """Bytes that are read at once."""
 MAX_ORDER, MAX_ANSWER = 1 << 26, 1 << 16
 """Bytes that follow in one message."""
@@ -66,7 +66,7 @@ class Stream:
                     self._kept = kept[whole:]
                     return letter, number, kept[HEAD.size : whole]
             self._wait()
-            part = os.read(self._handle, MOST)
+            part = os.read(self._handle, READ_BLOCK_BYTES)
             if not part:
                 raise EOFError
             self._kept = kept + part if kept else part

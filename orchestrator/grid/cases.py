@@ -20,13 +20,13 @@ from orchestrator.scenario.slot_sizes import shipped_slot_sizes
 ISO = SlotSizes(**shipped_slot_sizes("iso16787"))
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
-RATIO = 19.0
+STEERING_RATIO = 19.0
 
 
 def _car(wheelbase: float, front: float, rear: float, width: float, radius: float) -> Car:
     """Return a car from wheelbase, overhangs, width and the turning radius of its rear axle's middle [m]."""
     sensors = CarUltrasonic(mounts_on(wheelbase + front, rear, 0.5 * width))
-    steering = CarSteering(RATIO, RATIO * math.atan(wheelbase / radius))
+    steering = CarSteering(STEERING_RATIO, STEERING_RATIO * math.atan(wheelbase / radius))
     return Car(wheelbase, front, rear, width, steering=steering, ultrasonic=sensors)
 
 
@@ -43,9 +43,9 @@ EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind
 BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
 SPEEDS = (1.0, 2.5, 20.0 / 3.6)
-LOTS = 10_000
-STOP = 150.0
-BEHIND = 0.4
+SEED_STRIDE = 10_000
+STOP_TIME = 150.0
+WALL_DISTANCE = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
 PERPENDICULAR_DEPTH = 4.6
 """Of the neighbours of a perpendicular slot [m]."""
@@ -82,7 +82,7 @@ def cases(lot: int = 0) -> list[GridCase]:
     found = []
     everything = itertools.product(CARS, slots, BESIDE, HEADINGS, BODIES)
     for number, (car, (kind, side, extra), beside, degrees, body) in enumerate(everything):
-        speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
+        speed = SPEEDS[random.Random(number + SEED_STRIDE * lot).randrange(len(SPEEDS))]
         length = shortest_slot(kind, CARS[car], ISO) + extra
         heading = math.radians(degrees)
         found.append(GridCase(number, car, kind, side, extra, beside, heading, body, speed, length, lot))
@@ -92,15 +92,15 @@ def cases(lot: int = 0) -> list[GridCase]:
 def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return (vehicle, controller) parameters of a case."""
     car = CARS[case.car]
-    lot = random.Random(1000 + case.number + LOTS * case.lot)
+    lot = random.Random(1000 + case.number + SEED_STRIDE * case.lot)
     vehicle: dict[str, Any] = {**car_parameters(car), "body": BODY[case.body]}
     controller: dict[str, Any] = {**car_parameters(car), "system": 5}
     vehicle |= {
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,
-        "ultrasonic.seed": case.number + 1 + LOTS * case.lot,
+        "ultrasonic.seed": case.number + 1 + SEED_STRIDE * case.lot,
     }
-    vehicle |= {"odometry.perfect": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
+    vehicle |= {"odometry.ideal": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
     vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
     vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
     return vehicle | _scene(case, car.front_overhang + car.rear_overhang + car.wheelbase, car.width), controller
@@ -111,7 +111,7 @@ def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
     along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
     things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
     if case.kind == Kind.PARALLEL:
-        things.append((-12.0, case.length + 12.0, -width - BEHIND - 1.0, -width - BEHIND))
+        things.append((-12.0, case.length + 12.0, -width - WALL_DISTANCE - 1.0, -width - WALL_DISTANCE))
     scene: dict[str, Any] = {}
     for number, (x0, x1, y0, y1) in enumerate(things, start=1):
         name = f"scene.boxes[{number}]."
@@ -131,7 +131,7 @@ def standing_of(case: GridCase) -> tuple[Target, Slot]:
     wheelbase, front, rear, width = car.wheelbase, car.front_overhang, car.rear_overhang, car.width
     middle, turn = 0.5 * case.length, 0.5 * math.pi * case.side
     if case.kind == Kind.PARALLEL:
-        depth = width + BEHIND
+        depth = width + WALL_DISTANCE
         target = Target(x=middle - 0.5 * (wheelbase + front - rear), y=-0.5 * case.side * width)
         return target, Slot(x=middle, y=-0.5 * case.side * depth, length=case.length, width=depth)
     depth = PERPENDICULAR_DEPTH
@@ -145,12 +145,12 @@ def scenario_of(case: GridCase) -> Scenario:
     target, slot = standing_of(case)
     return Scenario(
         name="apa-grid",
-        stop_time=STOP,
+        stop_time=STOP_TIME,
         vehicle=vehicle,
         controller=controller,
         target=target,
         slot=slot,
-        limits=[*gbt_limits("gbt41630"), *shipped_requirements("no-contact")],
+        requirements=[*gbt_limits("gbt41630"), *shipped_requirements("no-contact")],
     )
 
 

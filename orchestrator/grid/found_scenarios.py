@@ -6,21 +6,21 @@ from typing import Any, NamedTuple
 
 from controller_fmu.valet.params import SlotWish
 from orchestrator.grid.cases import CARS
-from orchestrator.grid.found_slots import LOTS, FoundCase, SlotPlace, boxes_of, place_of, size_of, standing_of
+from orchestrator.grid.found_slots import SEED_STRIDE, FoundCase, SlotPlace, boxes_of, place_of, size_of, standing_of
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.polygons import box_corners
+from orchestrator.scenario.obstacle_map import box_corners
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 
-STOP = 240.0
-MARGIN = 0.12
-BEFORE = 3.0
+STOP_TIME = 240.0
+PLAN_MARGIN = 0.12
+APPROACH_DISTANCE = 3.0
 """The driver starts so far [m] before the neighbour that he passes first, and searches so far past the other."""
-BEHIND = 4.0
-AWAY = 4.0
+START_OFFSET = 4.0
+HANDOVER_DISTANCE = 4.0
 """Out of a slot, the car hands over so far [m] past the neighbour's middle."""
-OFF = 0.05
+PARKED_POSE_ERROR = 0.05
 """It stands in the slot so far off its middle [m], and so much askew [rad]."""
 TURNED = math.radians(2.0)
 AT_WALL = 0.5
@@ -34,7 +34,7 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
         "system": 7,
-        "plan.margin": MARGIN,
+        "plan.margin": PLAN_MARGIN,
         "search.active": not told,
         "search.wish": int(wish),
         "search.open_ended": case.neighbours == "one",
@@ -47,12 +47,12 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
         controller |= {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
     return Scenario(
         name="valet-slots",
-        stop_time=STOP,
+        stop_time=STOP_TIME,
         vehicle=_vehicle(case),
         controller=controller,
         target=target,
         slot=slot,
-        limits=[*shipped_requirements("valet-slot")],
+        requirements=[*shipped_requirements("valet-slot")],
     )
 
 
@@ -61,18 +61,18 @@ def out_of(case: FoundCase) -> Scenario:
 
     It is told the map, and where to hand over: along the street, its middle beyond the neighbour on that side.
     """
-    draw = random.Random(case.number + LOTS * case.lot + 41)
+    draw = random.Random(case.number + SEED_STRIDE * case.lot + 41)
     scenario, place, street = scenario_of(case, told=True), place_of(case), _street(case)
     inside, way = scenario.target, -1.0 if case.dead_end else draw.choice((1.0, -1.0))
     assert inside is not None
     target = Target(
-        x=place.x + way * (place.pitch + AWAY),
+        x=place.x + way * (place.pitch + HANDOVER_DISTANCE),
         y=case.side * 0.5 * (street.near + street.far),
         heading=0.0 if way > 0.0 else math.pi,
     )
     start = {
-        "start.x": inside.x + draw.uniform(-OFF, OFF),
-        "start.y": inside.y + draw.uniform(-OFF, OFF),
+        "start.x": inside.x + draw.uniform(-PARKED_POSE_ERROR, PARKED_POSE_ERROR),
+        "start.y": inside.y + draw.uniform(-PARKED_POSE_ERROR, PARKED_POSE_ERROR),
         "start.heading": inside.heading + draw.uniform(-TURNED, TURNED),
     }
     told = {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
@@ -82,7 +82,7 @@ def out_of(case: FoundCase) -> Scenario:
             "controller": scenario.controller | told,
             "target": target,
             "slot": None,
-            "limits": [*shipped_requirements("valet")],
+            "requirements": [*shipped_requirements("valet")],
         }
     )
 
@@ -113,11 +113,11 @@ def way_past(case: FoundCase) -> WayPast:
     length, width = size_of(case)
     front = length - CARS[case.car].rear_overhang
     place, boxes = place_of(case), [box_corners(box) for box in boxes_of(case)]
-    first = min(x for x, _ in boxes[1]) - BEFORE - front
+    first = min(x for x, _ in boxes[1]) - APPROACH_DISTANCE - front
     last = place.x + place.pitch if case.neighbours == "one" else max(x for x, _ in boxes[2])
-    way = (last + BEHIND - front - first) / math.cos(case.heading)
+    way = (last + START_OFFSET - front - first) / math.cos(case.heading)
     t = math.tan(case.heading)
-    row = [corner for box in boxes[:4] for corner in box if corner[0] < last + BEHIND + length]
+    row = [corner for box in boxes[:4] for corner in box if corner[0] < last + START_OFFSET + length]
     nearest = max(y - x * t for x, y in row)
     return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
 
@@ -153,7 +153,7 @@ def _vehicle(case: FoundCase) -> dict[str, Any]:
         "start.heading": case.side * case.heading,
         "driver.apa_switch_time": 0.5,
         "driver.profile[1].speed": case.speed,
-        **imperfect(case.number + 1 + LOTS * case.lot, random.Random(case.number + LOTS * case.lot + 29)),
+        **imperfect(case.number + 1 + SEED_STRIDE * case.lot, random.Random(case.number + SEED_STRIDE * case.lot + 29)),
     }
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from modelkit.car import car_length
 from orchestrator.grid.cases import CARS
-from orchestrator.scenario.polygons import box_corners
+from orchestrator.scenario.obstacle_map import box_corners
 from orchestrator.scenario.scenario import Slot, Target
 
 ANGLES = (30, 45, 60, 90, 120, 135, 150)
@@ -18,7 +18,7 @@ ANGLES = (30, 45, 60, 90, 120, 135, 150)
 NEIGHBOURS = ("straight", "crooked", "staggered", "pillars", "one")
 ENDS = ("open", "wall", "wheel stop", "shallow")
 STREETS = (5.5, 6.5, 9.0)
-LOTS = 100_000
+SEED_STRIDE = 100_000
 ROOM_ACROSS = 0.8
 """Of a slot beside one neighbour [m]."""
 AT_KERB = 0.2
@@ -57,7 +57,7 @@ def cases(runs: int, lot: int = 0) -> list[FoundCase]:
 
 
 def _case(number: int, lot: int) -> FoundCase:
-    draw = random.Random(number + LOTS * lot)
+    draw = random.Random(number + SEED_STRIDE * lot)
     angle = draw.choice((0, 0, *ANGLES, 90))
     nose = draw.random() < (0.7 if angle < 75 else 0.3)
     street = draw.choice(STREETS)
@@ -116,7 +116,7 @@ def size_of(case: FoundCase) -> tuple[float, float]:
 def boxes_of(case: FoundCase) -> list[Box]:
     """Return what stands around the slot on the right side, but for the street's other side."""
     length, width = size_of(case)
-    place, draw = place_of(case), random.Random(case.number + LOTS * case.lot + 17)
+    place, draw = place_of(case), random.Random(case.number + SEED_STRIDE * case.lot + 17)
     crooked = math.radians(5.0) if case.neighbours == "crooked" else 0.0
     stagger = 0.25 if case.neighbours == "staggered" else 0.0
     post = 0.5 / math.sin(math.radians(case.angle)) if case.neighbours == "pillars" else 0.0

@@ -7,7 +7,7 @@ from rich.table import Table as Printed
 
 from orchestrator.grid.found_scenarios import out_of, scenario_of
 from orchestrator.grid.found_slots import FoundCase, cases
-from orchestrator.scenario.polygons import map_of
+from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
@@ -32,14 +32,14 @@ MEASURES = {
 FACTORS = ("angle", "neighbours", "end", "street", "wish")
 WAY = "way"
 """A run of this is there to see whether there is a way."""
-PLANNING = 10.0
+PLANNING_TIME = 10.0
 
 
 def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False, ways: bool = False) -> Study:
     """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked.
 
     ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
-    short one in which the valet is told the map and has ``PLANNING`` seconds to plan: whether there is a way at all.
+    short one in which the valet receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
     """
     scenarios = []
     for case in cases(runs, lot):
@@ -60,7 +60,7 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
 def _planned(case: FoundCase) -> Scenario:
     """Return the short scenario in which the valet plans with the map and the target told."""
     told = _with_map(scenario_of(case, told=True))
-    return told.model_copy(update={"stop_time": PLANNING, "controller": told.controller | {"plan.at_once": 100}})
+    return told.model_copy(update={"stop_time": PLANNING_TIME, "controller": told.controller | {"plan.at_once": 100}})
 
 
 def _with_map(scenario: Scenario) -> Scenario:

@@ -17,7 +17,7 @@ def imperfect(seed: int, draw: random.Random) -> dict[str, Any]:
         "steering.lag": 0.05,
         "steering.backlash": 0.03,
         "drive.brake_lag": 0.08,
-        "odometry.perfect": False,
+        "odometry.ideal": False,
         "odometry.radius_error": draw.uniform(-0.002, 0.002),
         "odometry.steering_offset": draw.uniform(-0.0004, 0.0004),
         "odometry.tick": 0.01,

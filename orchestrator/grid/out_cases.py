@@ -16,12 +16,12 @@ from orchestrator.grid.cases import BODY, CARS, KINDS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 
-LOTS = 100_000
+SEED_STRIDE = 100_000
 LENGTH, WIDTH = 4.4, 1.8
 """Of the neighbours [m]."""
 ROOM: dict[int, tuple[float, float]] = {Kind.PARALLEL: (0.5, 2.0), Kind.PERPENDICULAR: (0.6, 1.6)}
 """By how much the slot is longer, or wider, than the car [m]."""
-NEAREST = 0.2
+MIN_NEIGHBOUR_GAP = 0.2
 """The car stands no nearer to a neighbour [m]."""
 BEHIND = ("nothing", "kerb", "wall")
 """What a parallel slot ends at; across the road a wall or nothing behind the tail."""
@@ -32,9 +32,9 @@ STREETS = (5.5, 6.5, 8.0, 0.0)
 STAGGER = (-0.2, 0.3)
 """Neighbours stand further out than the car by this [m]."""
 ASKEW = math.radians(2.0)
-WALL = 1.0
+WALL_THICKNESS = 1.0
 PASSES = ("nobody", "stands", "walks off")
-PERSON = 0.5
+PERSON_WIDTH = 0.5
 
 
 class OutCase(NamedTuple):
@@ -71,10 +71,10 @@ def cases(runs: int, lot: int = 0, people: bool = False) -> list[OutCase]:
 
 def case_of(number: int, lot: int, people: bool) -> OutCase:
     """Return one case."""
-    draw = random.Random(number + LOTS * lot)
+    draw = random.Random(number + SEED_STRIDE * lot)
     kind = draw.choice(list(ROOM))
     extra = draw.uniform(*ROOM[kind])
-    least = NEAREST / extra
+    least = MIN_NEIGHBOUR_GAP / extra
     behind = draw.choice(BEHIND)
     beside = draw.uniform(*BESIDE.get(behind, (0.0, 0.0))) if kind == Kind.PARALLEL else draw.uniform(*AT_TAIL)
     return OutCase(
@@ -126,9 +126,9 @@ def things_of(case: OutCase) -> dict[str, Footprint]:
         "second": Footprint(size + case.extra, size + case.extra + along, case.out_b - deep, case.out_b),
     }
     if case.behind == "wall":
-        found["wall"] = Footprint(-12.0, size + case.extra + 12.0, end - WALL, end)
+        found["wall"] = Footprint(-12.0, size + case.extra + 12.0, end - WALL_THICKNESS, end)
     if case.street > 0.0:
-        found["across"] = Footprint(-40.0, 50.0, case.street, case.street + WALL)
+        found["across"] = Footprint(-40.0, 50.0, case.street, case.street + WALL_THICKNESS)
     if case.behind == "kerb":
         found["kerb"] = Footprint(-15.0, 25.0, end, end)
     return found
@@ -150,19 +150,19 @@ def vehicle_of(case: OutCase) -> dict[str, Any]:
     scene |= {f"scene.boxes[5].{key}": value for key, value in _passer(case).items()}
     x, y, heading = start_of(case)
     place = {"start.x": x, "start.y": case.side * y, "start.heading": case.side * heading}
-    seed = case.number + 1 + LOTS * case.lot
+    seed = case.number + 1 + SEED_STRIDE * case.lot
     errors = imperfect(seed, random.Random(seed + 29)) | {"body": BODY[case.body]}
     return {**car_parameters(CARS[case.car]), **scene, **place, "driver.apa_switch_time": 0.5, **errors}
 
 
 def _passer(case: OutCase) -> dict[str, float]:
     """Return a person on the road beside the slot, who stands there for a while, or walks off across the road then."""
-    draw = random.Random(case.number + LOTS * case.lot + 53)
+    draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
     if case.passes == PASSES[0]:
         return {"length": 0.0}
     far = case.extra + (car_length(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
     place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
-    person, leaves = {**place, "length": PERSON, "width": PERSON}, draw.uniform(3.0, 20.0)
+    person, leaves = {**place, "length": PERSON_WIDTH, "width": PERSON_WIDTH}, draw.uniform(3.0, 20.0)
     if case.passes == PASSES[1]:
         return {**person, "disappear_at": leaves}
     speed = draw.uniform(0.8, 1.5)

@@ -13,13 +13,13 @@ from modelkit.vocabulary import Pose
 from orchestrator.grid.cases import CARS
 from orchestrator.grid.out_cases import OutCase, start_of, things_of
 
-KEPT = 0.05
+MIN_CLEARANCE = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""
 
 
 def moves_out(case: OutCase) -> int:
     """Return how many moves the planner needs that knows what stands there, with the whole lock; 0: it finds no way."""
-    site, car = site_known(case, KEPT), shape_known(case)
+    site, car = site_known(case, MIN_CLEARANCE), shape_known(case)
     start = to_slot(Pose(*start_of(case)), site.frame)
     search, plan = OutSearch(), PlanSearch(SEARCHING)
     while plan.status == SEARCHING:

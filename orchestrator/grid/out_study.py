@@ -22,9 +22,9 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.measures import Measure, When
 
-STOP = 150.0
-STANDING = 0.01
-AHEAD = 3.5
+STOP_TIME = 150.0
+STANDSTILL_SPEED = 0.01
+FREE_AHEAD = 3.5
 """A car is handed over with so much free ahead [m]; the assist asks for 4 m by its map."""
 MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
@@ -42,7 +42,7 @@ class OutRun(NamedTuple):
     nearest: float
     driven: bool
     """Touched something while it drove."""
-    shifts: int
+    manoeuvres: int
     seconds: float
     ahead: float
     """Free ahead of the car where it ended [m]."""
@@ -54,15 +54,15 @@ def scenario_of(case: OutCase) -> Scenario:
     """Return the scenario of a case: the driver wants out, to the side of the case."""
     return Scenario(
         name="apa-out",
-        stop_time=STOP,
+        stop_time=STOP_TIME,
         task="drive",
         vehicle=vehicle_of(case),
         controller={**car_parameters(CARS[case.car]), "system": 5},
         faults=[
-            Fault(signal="controller.choice.task", kind="override", value="pull_out"),
-            Fault(signal="controller.choice.side", kind="override", value="left"),
+            Fault(signal="controller.driver_selection.task", kind="override", value="pull_out"),
+            Fault(signal="controller.driver_selection.side", kind="override", value="left"),
         ],
-        limits=[*shipped_requirements("no-contact")],
+        requirements=[*shipped_requirements("no-contact")],
     )
 
 
@@ -93,8 +93,11 @@ def outs(table: Table) -> list[OutRun]:
         case = case_of(number, lot, people)
         out = str(columns["outcome"][row]) == "finished"
         end = Pose(*(float(columns[f"final.{name}"][row]) for name in ("x", "y", "heading")))
-        nearest, driven = float(columns["min_clearance"][row]), abs(float(columns["touched.speed"][row])) > STANDING
-        numbers = (nearest, driven, int(columns["shifts"][row]), float(columns["duration"][row]))
+        nearest, driven = (
+            float(columns["min_clearance"][row]),
+            abs(float(columns["touched.speed"][row])) > STANDSTILL_SPEED,
+        )
+        numbers = (nearest, driven, int(columns["manoeuvres"][row]), float(columns["duration"][row]))
         reason, way = str(columns["reason"][row]), 1 if out else moves_out(case)
         found.append(OutRun(case, out, reason, *numbers, free_ahead(case, end), way))
     return found
@@ -115,7 +118,7 @@ def report(table: Table, folder: Path) -> int:
     for reason, count in Counter(run.reason for run in found if not run.is_out).most_common():
         to.print(f"{count} not out: {reason}", highlight=False)
     touched, driven = sum(run.nearest <= 0.0 for run in found), sum(run.driven for run in found)
-    early = sum(run.is_out and run.ahead < AHEAD for run in found)
+    early = sum(run.is_out and run.ahead < FREE_AHEAD for run in found)
     out, ways = sum(run.is_out for run in found), sum(run.way > 0 for run in found)
     text = f"{len(found)} runs, a way out of {ways}, {out} out ({100.0 * out / max(ways, 1):.1f} %), {touched} touched"
     text += f" ({driven} while they drove)" if touched else ""
@@ -126,12 +129,12 @@ def report(table: Table, folder: Path) -> int:
 def _by_room(found: list[OutRun]) -> Printed:
     """Return how many came out by kind and room."""
     table = Printed(box=None, pad_edge=False)
-    for name in ("room", "runs", "a way", "out", "shifts", "nearest", "longest"):
+    for name in ("room", "runs", "a way", "out", "manoeuvres", "nearest", "longest"):
         table.add_column(name, justify="left" if name == "room" else "right")
     for kind, low in sorted({(run.case.kind, 0.5 * int(2.0 * run.case.extra)) for run in found}):
         own = [run for run in found if run.case.kind == kind and low <= run.case.extra < low + 0.5]
-        out = sorted((run for run in own if run.is_out), key=lambda run: run.shifts)
-        ends = (f"{out[len(out) // 2].shifts} (most {out[-1].shifts})",) if out else ("",)
+        out = sorted((run for run in own if run.is_out), key=lambda run: run.manoeuvres)
+        ends = (f"{out[len(out) // 2].manoeuvres} (most {out[-1].manoeuvres})",) if out else ("",)
         table.add_row(
             f"{KINDS[kind]}, {low:.1f} to {low + 0.5:.1f} m",
             *map(str, (len(own), sum(run.way > 0 for run in own), len(out))),

@@ -10,7 +10,7 @@ from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
-from orchestrator.grid.cases import BEHIND, CARS, GridCase, cases, parameters
+from orchestrator.grid.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
 from orchestrator.grid.start_range import is_inside
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived
@@ -19,7 +19,7 @@ from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.numbers import Number
 
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
-GHOST = 0.5
+FALSE_DETECTION_DISTANCE = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
 SHOWN = When("controller.apa.mode", (int(Mode.PARKING_SPACE_APPEARS),))
 """While the car stands to plan, and the slot it found is shown."""
@@ -38,7 +38,7 @@ MEASURES = {
     **{name: Measure("first", signal, SHOWN) for name, signal in SIGNALS.items()},
 }
 GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}
-HOUSE, HOUSE_BUT_SHIFTS = "house", "house, but for the shifts"
+HOUSE, HOUSE_BUT_SHIFTS = "house", "house, but for the manoeuvres"
 
 
 class GridRun(NamedTuple):
@@ -50,7 +50,7 @@ class GridRun(NamedTuple):
     lateral: float
     """Final errors against the true slot [m, rad]."""
     heading: float
-    shifts: int
+    manoeuvres: int
     parking_time: float
     nearest: float
     """Smallest clearance of the whole run [m]."""
@@ -65,17 +65,17 @@ class GridRun(NamedTuple):
     inside: bool
     """It stood inside the start range, see :mod:`orchestrator.grid.start_range`."""
     is_gbt: bool
-    """Parked within GB/T 41630: heading, lateral position, shifts, no contact."""
+    """Parked within GB/T 41630: heading, lateral position, manoeuvres, no contact."""
     is_house: bool
     """Parked within the house limits."""
-    is_house_but_shifts: bool
-    """The same with the shifts of GB/T 41630."""
+    is_house_except_manoeuvres: bool
+    """The same with the manoeuvres of GB/T 41630."""
 
     @property
     def is_ghost(self) -> bool:
         """Whether the slot that was shown is not there: neither corner's place nor its kind is that of one."""
         shown = self.kind != 0
-        return shown and (self.kind != self.case.kind or max(self.corner_a, self.corner_b) > GHOST)
+        return shown and (self.kind != self.case.kind or max(self.corner_a, self.corner_b) > FALSE_DETECTION_DISTANCE)
 
     @property
     def is_ended(self) -> bool:
@@ -98,7 +98,7 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
         row["reason"],
         row["final.lateral_error"],
         row["final.heading_error"],
-        int(row["shifts"]),
+        int(row["manoeuvres"]),
         row["parking_time"],
         row["min_clearance"],
         row["corner_a"],
@@ -133,7 +133,7 @@ def true_slot(case: GridCase) -> Slot:
     """Return the slot of a case as it is, its corner A at the world's origin."""
     side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
     slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
-    return slot._replace(depth=CARS[case.car].width + BEHIND) if case.kind == Kind.PARALLEL else slot
+    return slot._replace(depth=CARS[case.car].width + WALL_DISTANCE) if case.kind == Kind.PARALLEL else slot
 
 
 def corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:

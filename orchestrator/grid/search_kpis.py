@@ -19,8 +19,16 @@ from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import car_length
 from orchestrator.cosim.slave import Array
-from orchestrator.grid.cases import BODIES, CARS, ISO, KINDS, LOTS, GridCase, scenario_of
-from orchestrator.grid.parkings import GHOST, MEASURES, ODOMETRY, POSE, SIGNALS, corner_errors, pose_of
+from orchestrator.grid.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
+from orchestrator.grid.parkings import (
+    FALSE_DETECTION_DISTANCE,
+    MEASURES,
+    ODOMETRY,
+    POSE,
+    SIGNALS,
+    corner_errors,
+    pose_of,
+)
 from orchestrator.grid.parkings import SHOWN as WHILE_SHOWN
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Columns, Derived, Study
@@ -37,8 +45,8 @@ SPEEDS = (5.0, 10.0, 15.0, 20.0)
 """Of the search [km/h]."""
 BESIDE = (0.5, 1.0, 1.5, 2.0)
 """Lateral distance to the row where the car comes nearest to it [m]."""
-DRAWS = 4
-TURNED = 3.0
+DRAWS_PER_CASE = 4
+MAX_START_HEADING = 3.0
 """Largest heading against the road [deg]."""
 HEADING = "shown.heading"
 FOUND, MISSED, FALSE, REFUSED = "found", "missed", "false", "refused"
@@ -53,18 +61,18 @@ WORDS = {
 @cache
 def cases(lot: int = 0) -> list[GridCase]:
     """Return all cases."""
-    everything = itertools.product(KINDS, range(3), SPEEDS, BESIDE, range(DRAWS))
+    everything = itertools.product(KINDS, range(3), SPEEDS, BESIDE, range(DRAWS_PER_CASE))
     return [_case(number, lot, *given) for number, given in enumerate(everything)]
 
 
 def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: float, draw: int) -> GridCase:
-    lottery = random.Random(f"search {number + LOTS * lot}")
+    lottery = random.Random(f"search {number + SEED_STRIDE * lot}")
     name = lottery.choice(list(CARS))
     car, shortest = CARS[name], shortest_slot(kind, CARS[name], ISO)
     length = car_length(car)
     small = (length if kind == Kind.PARALLEL else car.width) + TOO_SMALL[kind]
     extra = (*WIDER[kind], small - shortest)[size]
-    side, heading = 1 - 2 * (draw % 2), math.radians(lottery.uniform(-TURNED, TURNED))
+    side, heading = 1 - 2 * (draw % 2), math.radians(lottery.uniform(-MAX_START_HEADING, MAX_START_HEADING))
     body = BODIES[draw // 2]
     return GridCase(number, name, kind, side, extra, beside, heading, body, speed / 3.6, shortest + extra, lot)
 
@@ -112,7 +120,7 @@ def _one_shown(row: Mapping[str, float]) -> tuple[str, float, float, float, floa
     a, b = corner_errors(case, row)
     turn = row[HEADING] - pose_of(row, ODOMETRY).heading + pose_of(row, POSE).heading
     right = float(int(row["shown.kind"]) == case.kind)
-    word = FOUND if case.extra >= 0.0 and max(a, b) <= GHOST else FALSE
+    word = FOUND if case.extra >= 0.0 and max(a, b) <= FALSE_DETECTION_DISTANCE else FALSE
     return word, a, b, math.remainder(turn, 2.0 * math.pi), right
 
 
@@ -148,7 +156,7 @@ class Kpis(NamedTuple):
     parked: int
     time: tuple[float, float]
     """From confirmation to parked [s], of those parked."""
-    shifts: tuple[float, float]
+    manoeuvres: tuple[float, float]
 
 
 def kpis(columns: Mapping[str, Array], rows: Array) -> Kpis:
@@ -166,7 +174,7 @@ def kpis(columns: Mapping[str, Array], rows: Array) -> Kpis:
         heading=_spread(np.abs(columns["slot_heading"][rows][found])),
         parked=int((parked & found).sum()),
         time=_spread(columns["parking_time"][rows][parked]),
-        shifts=_spread(columns["shifts"][rows][parked]),
+        manoeuvres=_spread(columns["manoeuvres"][rows][parked]),
     )
 
 
@@ -190,7 +198,7 @@ HEADS: dict[str, Callable[[Kpis], str]] = {
     "heading": lambda item: f"{math.degrees(item.heading[0]):.2f} / {math.degrees(item.heading[1]):.2f} deg",
     "parked": lambda item: f"{item.parked} of {item.found}",
     "time": lambda item: f"{item.time[0]:.1f} / {item.time[1]:.1f} s",
-    "shifts": lambda item: f"{item.shifts[0]:.0f} / {item.shifts[1]:.0f}",
+    "manoeuvres": lambda item: f"{item.manoeuvres[0]:.0f} / {item.manoeuvres[1]:.0f}",
 }
 
 

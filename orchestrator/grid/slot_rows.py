@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 
 from rich.table import Table as Printed
 
-from controller_fmu.common.told import SlotKind
+from controller_fmu.common.external_slot import SlotKind
 from modelkit.car import car_length
 from orchestrator.grid.cases import CARS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.polygons import map_of
+from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
@@ -35,11 +35,11 @@ WIDER = (0.6, 1.2)
 """Of the slot than of the car [m]."""
 WAYS = tuple(itertools.product((1, -1), ("before", "past")))
 """Direction along the street, and whether the car stands before the slot or past it."""
-DEEPER = 0.5
-AWAY = 7.0
-LOTS = 10_000
-STOP = 200.0
-MARGIN = 0.1
+EXTRA_DEPTH = 0.5
+START_DISTANCE = 7.0
+SEED_STRIDE = 10_000
+STOP_TIME = 200.0
+PLAN_MARGIN = 0.1
 
 
 class RowCase(NamedTuple):
@@ -72,7 +72,7 @@ def scenario_of(case: RowCase) -> Scenario:
     """Return the scenario of a case: corner A at the origin, the slot to the right of x, the street to the left."""
     car = CARS[case.car]
     length, width = car_length(car), car.width + case.wider
-    turn, depth = math.radians(case.angle), length + DEEPER
+    turn, depth = math.radians(case.angle), length + EXTRA_DEPTH
     into, opening = (math.cos(turn), -math.sin(turn)), width / math.sin(turn)
     middle = (0.5 * opening + 0.5 * depth * into[0], 0.5 * depth * into[1])
     heading = -turn if case.kind == "nose" else math.pi - turn
@@ -81,17 +81,17 @@ def scenario_of(case: RowCase) -> Scenario:
     slot = {"kind": KINDS[case.kind], "bx": opening, "heading": -turn, "depth": depth}
     scenario = Scenario(
         name="valet-rows",
-        stop_time=STOP,
+        stop_time=STOP_TIME,
         vehicle=_vehicle(case, opening, middle, depth),
         controller={
             **car_parameters(car),
             "system": 7,
-            "plan.margin": MARGIN,
+            "plan.margin": PLAN_MARGIN,
             **{f"slot.{name}": value for name, value in slot.items()},
         },
         target=target,
         slot=Slot(x=middle[0], y=middle[1], heading=-turn, length=depth, width=width),
-        limits=[*shipped_requirements("valet")],
+        requirements=[*shipped_requirements("valet")],
     )
     return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
 
@@ -99,7 +99,7 @@ def scenario_of(case: RowCase) -> Scenario:
 def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: float) -> dict[str, Any]:
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, turn = CARS[case.car], math.radians(case.angle)
-    lot = random.Random(5000 + case.number + LOTS * case.lot)
+    lot = random.Random(5000 + case.number + SEED_STRIDE * case.lot)
     length = car_length(car)
     behind = depth * math.sin(turn) + 0.5 * (car.width + case.wider) * math.cos(turn) + 0.8
     boxes = [
@@ -112,11 +112,11 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     }
     side = -1.0 if (case.where == "before") == (case.direction > 0) else 1.0
     start = {
-        "start.x": 0.5 * opening + side * AWAY + lot.uniform(-1.0, 1.0),
+        "start.x": 0.5 * opening + side * START_DISTANCE + lot.uniform(-1.0, 1.0),
         "start.y": 0.5 * case.street + lot.uniform(-0.2, 0.2),
         "start.heading": (0.0 if case.direction > 0 else math.pi) + lot.uniform(-0.07, 0.07),
     }
-    errors = imperfect(case.number + 1 + LOTS * case.lot, lot)
+    errors = imperfect(case.number + 1 + SEED_STRIDE * case.lot, lot)
     return {**car_parameters(car), **scene, **start, **errors}
 
 
@@ -146,7 +146,7 @@ def _labels(case: RowCase) -> dict[str, str | float]:
 
 def report(table: Table, folder: Path) -> int:
     """Print how many parked by angle, kind and street. Returns 1 if a run touched something."""
-    names = ("angle", "kind", "street", "outcome", "reason", "min_clearance", "duration", "shifts")
+    names = ("angle", "kind", "street", "outcome", "reason", "min_clearance", "duration", "manoeuvres")
     rows = [dict(zip(names, row, strict=True)) for row in zip(*(table.column(name) for name in names), strict=True)]
     console().print(_by_angle(rows))
     for reason in sorted({str(row["reason"]) for row in rows if row["outcome"] != "parked"}):
@@ -157,7 +157,7 @@ def report(table: Table, folder: Path) -> int:
 
 def _by_angle(rows: list[dict[str, Any]]) -> Printed:
     table = Printed(box=None, pad_edge=False)
-    for name in ("angle", *(f"{kind}, {street:g} m" for kind, street in _columns()), "touched", "shifts", "time"):
+    for name in ("angle", *(f"{kind}, {street:g} m" for kind, street in _columns()), "touched", "manoeuvres", "time"):
         table.add_column(name, justify="right")
     for angle in ANGLES:
         group = [row for row in rows if row["angle"] == angle]
@@ -166,9 +166,10 @@ def _by_angle(rows: list[dict[str, Any]]) -> Printed:
             own = [row for row in group if (row["kind"], row["street"]) == (kind, street)]
             cells.append(f"{sum(row['outcome'] == 'parked' for row in own)} of {len(own)}")
         parked = [row for row in group if row["outcome"] == "parked"]
-        shifts, times = sorted(row["shifts"] for row in parked), sorted(row["duration"] for row in parked)
+        manoeuvres, times = sorted(row["manoeuvres"] for row in parked), sorted(row["duration"] for row in parked)
         middle = len(parked) // 2
-        ends = (f"{shifts[middle]:.0f} (most {shifts[-1]:.0f})", f"{times[middle]:.0f} s") if parked else ("", "")
+        counts = f"{manoeuvres[middle]:.0f} (most {manoeuvres[-1]:.0f})" if parked else ""
+        ends = (counts, f"{times[middle]:.0f} s" if parked else "")
         table.add_row(f"{angle} deg", *cells, str(sum(row["min_clearance"] <= 0.0 for row in group)), *ends)
     return table
 

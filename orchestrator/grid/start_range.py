@@ -61,6 +61,6 @@ def _ways_in(slot: Slot, hashed: _Hashed) -> tuple[tuple[Site, Shape, tuple[Exit
     for attempt in range(ATTEMPTS):
         site = site_of(slot, car, margins_of(attempt, params.apa))
         ways = (exit_of(variant, site, car) for variant in range(VARIANTS))
-        good = tuple(way for way in ways if way.found and way.moves + 1 <= params.apa.plan.shifts)
+        good = tuple(way for way in ways if way.found and way.moves + 1 <= params.apa.plan.manoeuvres)
         found.append((site, car, good))
     return tuple(found)

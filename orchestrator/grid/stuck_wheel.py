@@ -29,7 +29,7 @@ BASES: dict[str, tuple[str, ...]] = {
 STICKS = {"ntbptcwpt": (0.1, 14.0), "adaptive": (0.1, 12.0), "apa": (7.0, 25.0)}
 """Between these times [s] a wheel sticks; the assist steers from 7 to 9 s on."""
 STOP_TIME = 130.0
-NEVER = 1e9
+NEVER_TIME = 1e9
 REAL = {
     "car.steering.rate_limit": math.radians(0.8 * 570.0),
     "steering.dead_time": 0.1,
@@ -37,7 +37,7 @@ REAL = {
     "steering.backlash": math.radians(5.0),
 }
 """A real actuator: a fifth slower than the controller believes, late, lazy, with play."""
-OFF = LimitParams().wheel_off
+OFF = LimitParams().steering_tracking_error
 
 
 class StuckDrive(NamedTuple):
@@ -65,7 +65,7 @@ class StuckDrive(NamedTuple):
     @property
     def is_asked(self) -> bool:
         """Return whether something was still asked of the stuck wheel, long enough to tell it from a slow one."""
-        return self.took - self.seen > LimitParams().wheel_fault or self.delay >= 0.0
+        return self.took - self.seen > LimitParams().steering_fault_debounce or self.delay >= 0.0
 
     @property
     def is_false(self) -> bool:
@@ -82,8 +82,8 @@ def scenario_of(system: str, number: int, sticks: bool) -> Scenario:
         "start.x": float(base.vehicle.get("start.x", 0.0)) + draw.uniform(-0.2, 0.2),
         "start.y": float(base.vehicle.get("start.y", 0.0)) + draw.uniform(-0.1, 0.1),
         "driver.reaction_delay": draw.uniform(0.0, 0.5),
-        "driver.obeys_slow_down": True,
-        "steering.stuck_time": draw.uniform(*STICKS[system]) if sticks else NEVER,
+        "driver.complies_with_slow_down": True,
+        "steering.fault_time": draw.uniform(*STICKS[system]) if sticks else NEVER_TIME,
     }
     speed = draw.uniform(0.3, 1.5)
     if system != "apa":
@@ -102,7 +102,7 @@ def drive(system: str, number: int, sticks: bool, files: dict[str, Path] | None,
     """Return what becomes of a drive."""
     scenario = scenario_of(system, number, sticks)
     recording = run_scenario(scenario, files, kind=kind).recording
-    stuck = float(scenario.vehicle["steering.stuck_time"])
+    stuck = float(scenario.vehicle["steering.fault_time"])
     found = _first(recording, recording.signals["controller.reason"] == Reason.STEERING_FAULT)
     ends = found if math.isfinite(found) else _ends(recording)
     seen = _off_for_good(recording, stuck, ends)
@@ -145,7 +145,7 @@ HEADS = (
     "not stuck",
     "false faults",
 )
-SOON = 0.305
+DETECTION_TIME = 0.305
 """0.3 s, and half a sample for rounding."""
 
 
@@ -156,7 +156,7 @@ def line_of(system: str, stuck: list[StuckDrive], healthy: list[StuckDrive]) -> 
     wrong = sum(item.is_false for item in stuck) + sum(math.isfinite(item.found) for item in healthy)
     return [
         system,
-        *map(str, (len(stuck), len(asked), len(delays), sum(delay <= SOON for delay in delays))),
+        *map(str, (len(stuck), len(asked), len(delays), sum(delay <= DETECTION_TIME for delay in delays))),
         *(f"{value:.2f} s" for value in (delays[len(delays) // 2], delays[-1])),
         *map(str, (sum(item.touched for item in stuck), len(healthy), wrong)),
     ]

@@ -29,7 +29,7 @@ def study_of(chosen: list[GridCase]) -> Study:
     content = {
         "name": "apa-grid",
         "title": "The parking assist over cars, slots, distances, headings and bodies",
-        "description": "Parked: within GB/T 41630 (heading, lateral position, shifts of parallel parking), no contact.",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, manoeuvres if parallel), no contact.",
         "map": {"x": "extra", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
     }
@@ -76,7 +76,7 @@ def line(item: GridRun) -> str:
         f"{case.number:4d} {case.car} {KINDS[case.kind]} {SIDES[case.side]} +{case.extra:.1f} m, "
         f"{case.beside:.1f} m beside, {math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
         f"{'inside' if item.inside else 'outside'}: {Mode(item.mode).name.lower()} ({item.reason}), "
-        f"{100.0 * item.lateral:+.1f} cm {math.degrees(item.heading):+.2f} deg, {item.shifts} shifts, "
+        f"{100.0 * item.lateral:+.1f} cm {math.degrees(item.heading):+.2f} deg, {item.manoeuvres} manoeuvres, "
         f"{item.parking_time:.0f} s, {100.0 * item.nearest:.0f} cm clear, "
         f"corners {100.0 * item.corner_a:.0f} and {100.0 * item.corner_b:.0f} cm: {verdict}"
     )
@@ -115,19 +115,19 @@ def _totals(found: list[GridRun]) -> Printed:
 def _by_size(found: list[GridRun]) -> Printed:
     """Return how the limits are met in slots of each size: what a slot allows depends on it."""
     table = Printed(box=None, pad_edge=False)
-    columns = ("slot", "runs", "GB/T", "house", "house, but shifts as GB/T", "shifts", "nearest")
+    columns = ("slot", "runs", "GB/T", "house", "house, but manoeuvres as GB/T", "manoeuvres", "nearest")
     for name in columns:
         table.add_column(name, justify="left" if name == "slot" else "right")
     for kind, extra in [(kind, extra) for kind, extras in EXTRA.items() for extra in extras]:
         group = [item for item in found if (item.case.kind, item.case.extra) == (kind, extra)]
         if not group:
             continue
-        shifts = sorted(item.shifts for item in group)
+        manoeuvres = sorted(item.manoeuvres for item in group)
         table.add_row(
             f"{KINDS[kind]}, ISO's shortest + {extra:.1f} m",
             *map(str, (len(group), sum(item.is_gbt for item in group), sum(item.is_house for item in group))),
-            str(sum(item.is_house_but_shifts for item in group)),
-            f"{shifts[0]} to {shifts[-1]}",
+            str(sum(item.is_house_except_manoeuvres for item in group)),
+            f"{manoeuvres[0]} to {manoeuvres[-1]}",
             f"{100.0 * min(item.nearest for item in group):.0f} cm",
         )
     return table

@@ -10,7 +10,7 @@ from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import models_for
-from orchestrator.scenario.polygons import map_of
+from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
 from orchestrator.sweep.disturbed import heard, numbers_for
@@ -44,36 +44,36 @@ def situation(scenario: Scenario) -> dict[str, Any]:
     if reason:
         raise BadInput(f"cannot be driven on a page: {reason}", file=scenario.name)
     measures = measures_for(scenario)
-    ending = scenario.ending
+    ending = scenario.stop_condition
     return {
         **{key: getattr(scenario, key) for key in ("name", "title", "description", "task", "expect", "seed")},
         "source": scenario.file and _shipped_name(scenario),
-        "changed": scenario.changed,
+        "overrides": scenario.overrides,
         "times": [
             scenario.step_ns,
             scenario.stop_ns,
-            scenario.every.get("vehicle", 1),
-            scenario.every.get("controller", 1),
+            scenario.decimation.get("vehicle", 1),
+            scenario.decimation.get("controller", 1),
         ],
         **{owner: getattr(scenario, owner) for owner in ("vehicle", "controller")},
         "target": scenario.target.model_dump() if scenario.target else None,
         "slot": scenario.slot.model_dump() if scenario.slot else None,
-        "polygons": scenario.polygons,
+        "obstacles": scenario.obstacles,
         "maps": map_of(scenario).items() <= scenario.controller.items(),
         "faults": _faults(scenario),
         "success": SUCCESS[scenario.task],
         "missed": MISSED[scenario.task],
         "ending": {
             **{"mode": ending.signal, "reason": ending.reason, "speed": SPEED, "still": ending.still},
-            **{name: ending.values(getattr(ending, name)) for name in ("done", "failed", "over")},
+            **{name: ending.values(getattr(ending, name)) for name in ("succeeded", "failed", "ended")},
             **{
                 "standstill_ns": ending.standstill_ns,
                 "final": list(ending.final()),
-                "word": ending.text(ending.done[0]),
+                "word": ending.text(ending.succeeded[0]),
             },
         },
         "measures": [_measure(item) for item in measures],
-        "limits": [_limit(item, measures) for item in scenario.limits],
+        "limits": [_limit(item, measures) for item in scenario.requirements],
     }
 
 

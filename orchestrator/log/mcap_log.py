@@ -166,7 +166,7 @@ class _Pictures:
         self._path_seen = b""
         slot = slot_box(scenario.slot) if scenario.slot is not None else None
         target = scenario.target.pose if scenario.target is not None else None
-        self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.polygons), target)
+        self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.obstacles), target)
         self._changes = self._stage.changes_ns()
 
     def exchanged(self, t_ns: int) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from orchestrator.drawing.panels import MODES, PANELS
 
-FOLDER = Path(__file__).parent.parent / "layouts"
+LAYOUT_FOLDER = Path(__file__).parent.parent / "layouts"
 TITLES = {"foxglove": "foxglovePanelTitle", "lichtblick": "lichtblickPanelTitle"}
 DRAWN = ("/scene", "/path", "/trail")
 
@@ -36,10 +36,10 @@ def layout(viewer: str) -> dict[str, Any]:
 
 def write_layouts() -> list[Path]:
     """Write the shipped files and return their paths."""
-    FOLDER.mkdir(exist_ok=True)
+    LAYOUT_FOLDER.mkdir(exist_ok=True)
     paths = []
     for viewer in TITLES:
-        paths.append(FOLDER / f"{viewer}.json")
+        paths.append(LAYOUT_FOLDER / f"{viewer}.json")
         paths[-1].write_text(json.dumps(layout(viewer), indent=2) + "\n", encoding="utf-8")
     return paths
 

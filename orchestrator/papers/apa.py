@@ -44,7 +44,7 @@ CORNERS = "apa-told"
 """Parks in a slot whose corners are inputs, where the sensors by themselves find none."""
 CARS = ("guo2015", "zhang2022")
 """Shipped cars; those of CommonRoad turn their front wheels by 52 deg and more."""
-SPEED = 5.0 / 3.6
+MAX_SOURCE_SPEED = 5.0 / 3.6
 """The source's system works below 5 km/h [m/s]."""
 REACHED = {"apa-parallel": (0.015, 0.01), "apa-perpendicular": (0.006, 0.002), "apa-parallel-tight": (0.012, 0.003)}
 """A little over what is reached at the end: lateral error [m], heading error [rad]."""
@@ -166,8 +166,8 @@ def _curvature_rows() -> list[Row]:
 def _corner_rows(driven: Driven) -> list[Row]:
     """Return whether the slot is where Table 1's inputs (corners A and B, heading) say, and the car parks in it."""
     name, signals = driven.summary.scenario, driven.recording.signals
-    inputs = sum(f"controller.told.{key}" in signals for key in ("ax", "ay", "bx", "by", "heading"))
-    corners = [float(signals[f"controller.told.{key}"][-1]) for key in ("ax", "bx")]
+    inputs = sum(f"controller.external_slot.{key}" in signals for key in ("ax", "ay", "bx", "by", "heading"))
+    corners = [float(signals[f"controller.external_slot.{key}"][-1]) for key in ("ax", "bx")]
     x = float(signals["vehicle.pose.x"][-1])
     inside = min(corners) < x < max(corners)
     parked = driven.summary.outcome == "parked" and inside
@@ -182,8 +182,8 @@ def _run_rows(driven: Driven) -> list[Row]:
     parking = np.isin(signals["controller.apa.mode"], [Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING])
     fastest = float(np.max(np.abs(signals["vehicle.speed"][parking])))
     rows = [
-        Row(name, "outcome", "", driven.scenario.expect, summary.outcome, 0.0, basis=CONCLUSION),
-        bound_row(name, "speed while parking", "km/h", 3.6 * SPEED, 3.6 * fastest)._replace(basis=OWN),
+        Row(name, "outcome", "", driven.scenario.expected_outcome, summary.outcome, 0.0, basis=CONCLUSION),
+        bound_row(name, "speed while parking", "km/h", 3.6 * MAX_SOURCE_SPEED, 3.6 * fastest)._replace(basis=OWN),
     ]
     if summary.outcome != "parked":
         return rows
@@ -192,6 +192,6 @@ def _run_rows(driven: Driven) -> list[Row]:
         *rows,
         Row(name, "lateral error at the end", "m", None, summary.final.lateral_error, lateral, basis=OWN),
         Row(name, "heading error at the end", "rad", None, summary.final.heading_error, heading, basis=OWN),
-        Row(name, "shifts", "1", None, float(summary.shifts or 0)),
+        Row(name, "manoeuvres", "1", None, float(summary.manoeuvres or 0)),
         Row(name, "time to park", "s", None, float(signals["controller.apa.parking_time"][-1])),
     ]

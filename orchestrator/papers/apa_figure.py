@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
 
-EVERY = 120
+ROWS_PER_OUTLINE = 120
 """Rows between two outlines drawn."""
 MARKS = {1: ("assist", "tab:blue"), 0: ("search", "0.6")}
 
@@ -39,7 +39,7 @@ def _draw(axes: Any, driven: Driven) -> None:
         axes.plot(np.where(driving == flag, x, np.nan), np.where(driving == flag, y, np.nan), color=colour, label=label)
     front = float(vehicle["car.wheelbase"]) + float(vehicle["car.front_overhang"])
     rear, half = float(vehicle["car.rear_overhang"]), 0.5 * float(vehicle["car.width"])
-    for row in [*np.flatnonzero(driving)[::EVERY], len(x) - 1]:
+    for row in [*np.flatnonzero(driving)[::ROWS_PER_OUTLINE], len(x) - 1]:
         axes.plot(*_rectangle(x[row], y[row], heading[row], front, rear, half), color="tab:blue", linewidth=0.5)
     for corner in ("slot.a", "corner_b"):
         axes.plot(signals[f"controller.apa.{corner}.x"][-1], signals[f"controller.apa.{corner}.y"][-1], "r+")

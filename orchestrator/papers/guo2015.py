@@ -19,18 +19,18 @@ from modelkit.vocabulary import Pose
 from orchestrator.papers.guo2015_case5 import fit_rows
 from orchestrator.papers.guo2015_drivers import obeying_rows
 from orchestrator.papers.guo2015_figure import draw_case
-from orchestrator.papers.guo2015_windows import HEADING, LATERAL, START, window_rows
+from orchestrator.papers.guo2015_windows import HEADING_TOLERANCE, POSITION_TOLERANCE, START, window_rows
 from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
 from orchestrator.verdict.summary import Event
 
 TITLE = "Path tracking control strategy of automatic parking system (Guo et al. 2015)"
 CASES = (1, 2, 3, 4, 5)
 TANGENT_X = -3.8
-TIME = 0.1
+TIME_TOLERANCE = 0.1
 """Largest difference of a time [s]: cases 2 and 4, the same drive until there, are printed 0.09 s apart."""
-TANGENT_TIME = {1: (9.5, 0.475), 2: (3.5, 0.175), 4: (3.59, TIME)}
+TANGENT_TIME = {1: (9.5, 0.475), 2: (3.5, 0.175), 4: (3.59, TIME_TOLERANCE)}
 """When x = -3.8 m, as printed [s], and what is allowed: 5 % where the speed is "about" so much."""
-NEAR = 0.01
+POSE_TOLERANCE = 0.01
 NEAR_HEADING = 5e-3
 """What the poses at Q2 and Q1 may differ by [m], [rad]: less than what a doubled k3 makes of them."""
 SWITCHES = (
@@ -171,11 +171,27 @@ def _case_4_rows(run: str, driven: Driven, fast: bool) -> list[Row]:
     known = "" if fast else RATES
     left = start.t - _time_at_x(driven, TANGENT_X)
     rows = [
-        Row(run, "point tracking starts: t after x = -3.8 m", "s", 0.99, left, TIME, basis=PRINTED, differs=known),
-        Row(run, "point tracking starts: x", "m", START[0], start.x, LATERAL, basis=PRINTED, differs=known),
+        Row(
+            run,
+            "point tracking starts: t after x = -3.8 m",
+            "s",
+            0.99,
+            left,
+            TIME_TOLERANCE,
+            basis=PRINTED,
+            differs=known,
+        ),
+        Row(run, "point tracking starts: x", "m", START[0], start.x, POSITION_TOLERANCE, basis=PRINTED, differs=known),
         Row(run, "point tracking starts: y", "m", START[1], start.y, untestable="the threshold is read off this pose"),
         Row(
-            run, "point tracking starts: heading", "rad", START[2], start.heading, HEADING, basis=PRINTED, differs=known
+            run,
+            "point tracking starts: heading",
+            "rad",
+            START[2],
+            start.heading,
+            HEADING_TOLERANCE,
+            basis=PRINTED,
+            differs=known,
         ),
     ]
     for item, phase, printed in SWITCHES:
@@ -188,7 +204,7 @@ def _case_4_rows(run: str, driven: Driven, fast: bool) -> list[Row]:
 
 def _switch_rows(run: str, item: str, printed: tuple[float, float, float], event: Event, known: str) -> list[Row]:
     why = "reaching it is what switches; the driver's speed after the stop is chosen"
-    y = Row(run, f"{item}: y", "m", printed[1], event.y, NEAR, basis=PRINTED)
+    y = Row(run, f"{item}: y", "m", printed[1], event.y, POSE_TOLERANCE, basis=PRINTED)
     heading = Row(run, f"{item}: heading", "rad", printed[2], event.heading, NEAR_HEADING, basis=PRINTED)
     rows = [y, heading]
     if known:
@@ -219,7 +235,7 @@ def _end_rows(run: str, driven: Driven) -> list[Row]:
         Row(run, "end: heading error", "rad", None, final.heading_error),
         Row(run, "end: ahead of Q3", "m", None, final.longitudinal_error),
         Row(run, "end: t", "s", None, driven.summary.duration),
-        Row(run, "shifts", "1", None, float(driven.summary.shifts or 0)),
+        Row(run, "manoeuvres", "1", None, float(driven.summary.manoeuvres or 0)),
         Row(run, "nearest to a neighbour", "m", None, clearance),
     ]
     if run in ENDS:

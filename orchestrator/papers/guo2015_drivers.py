@@ -66,7 +66,7 @@ def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...], sets
     ]
     scenario, design = design_of(drivers)
     measures = {name: Measure("largest", f"controller.{name}_error") for name in ("lateral", "heading")}
-    asked = Study(in_line(scenario), design, {"name": run}, measures=measures, within={"ours": scenario.limits})
+    asked = Study(in_line(scenario), design, {"name": run}, measures=measures, within={"ours": scenario.requirements})
     found = columns_in_memory(asked)
     limit = GuoThresholds()
     stayed = (np.abs(found["lateral"]) <= limit.leave_lateral) & (np.abs(found["heading"]) <= limit.leave_heading)

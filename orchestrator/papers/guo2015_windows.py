@@ -15,9 +15,9 @@ from orchestrator.verdict.summary import Event, summarize
 RUN = "guo2015-case4-105"
 START = (-4.803, -2.441, 0.588)
 """Pose at which point tracking starts, as printed for 4.58 s."""
-LATERAL = 0.015
+POSITION_TOLERANCE = 0.015
 """Largest difference of a position [m]."""
-HEADING = 0.025
+HEADING_TOLERANCE = 0.025
 """Largest difference of a heading [rad]."""
 WIDE = (0.05, 0.03)
 """A wider window, to see what the limits above are worth [m], [rad]."""
@@ -40,14 +40,14 @@ FITTED = (
     Fitted("threshold to leave the path", "controller.guo2015.threshold.leave_lateral", 0.154, 0.001, "m"),
     Fitted("driver's speed", "vehicle.driver.profile[1].speed", 1.5, 0.005, "m/s"),
 )
-FARTHEST = 100
+MAX_STEPS = 100
 """Steps to each side at most."""
 
 
 def window_rows() -> list[Row]:
     """Return between which values of each fitted number the pose still fits, the others as they are."""
     rows = []
-    for lateral, heading in ((LATERAL, HEADING), WIDE):
+    for lateral, heading in ((POSITION_TOLERANCE, HEADING_TOLERANCE), WIDE):
         for fitted in FITTED:
             low, high = (_edge(fitted, sign, lateral, heading) for sign in (-1, 1))
             item = f"fits within {100.0 * lateral:g} cm and {heading:g} rad: {fitted.what}"
@@ -58,7 +58,7 @@ def window_rows() -> list[Row]:
 def _edge(fitted: Fitted, sign: int, lateral: float, heading: float) -> float:
     """Return the last value in this direction with which the pose fits."""
     last = fitted.value
-    for k in range(1, FARTHEST):
+    for k in range(1, MAX_STEPS):
         value = fitted.value + sign * k * fitted.step
         start = start_of_point_tracking(fitted, value)
         if start is None or not _fits(start, lateral, heading):

@@ -66,7 +66,7 @@ def _rows(driven: Driven) -> list[Row]:
         Row(name, "heading at the end", "deg", None, turned, heading, basis=OWN),
         Row(name, "lateral error at the end", "m", None, final.lateral_error, lateral, basis=OWN),
         Row(name, "largest deviation from the common tangent", "m", None, float(np.abs(tangent).max()), off, basis=OWN),
-        Row(name, "shifts", "1", None, float(driven.summary.shifts or 0)),
+        Row(name, "manoeuvres", "1", None, float(driven.summary.manoeuvres or 0)),
         Row(name, "smallest clearance", "m", None, float(signals["vehicle.clearance"].min())),
         Row(name, "time", "s", None, driven.summary.duration),
     ]

@@ -18,7 +18,7 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import plan
 from controller_fmu.hsic.characteristic_states import Characteristic
 from controller_fmu.preview.control import drive_force, steering_angle
-from controller_fmu.preview.params import ROAD, PreviewParams
+from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.road import road_at, road_length
 from modelkit.vocabulary import Pose
@@ -219,12 +219,12 @@ def rule_surfaces(_: list[Driven]) -> Figure:
 def target_road(_: list[Driven]) -> Figure:
     """Return Fig. 7: the road, its curvatures printed beside it."""
     figure, (axis,) = grid_of(1, 1, 4.5, 4.0)
-    poses = [road_at(ROAD, s).pose for s in np.arange(0.0, road_length(ROAD), 1.0)]
+    poses = [road_at(DEFAULT_ROAD, s).pose for s in np.arange(0.0, road_length(DEFAULT_ROAD), 1.0)]
     axis.plot([pose.x for pose in poses], [pose.y for pose in poses], color="#000000", label="road")
     s = 0.0
-    for piece in ROAD:
+    for piece in DEFAULT_ROAD:
         if piece.curvature:
-            at = road_at(ROAD, s + 0.5 * piece.length).pose
+            at = road_at(DEFAULT_ROAD, s + 0.5 * piece.length).pose
             axis.annotate(f"{piece.curvature:g} 1/m", (at.x, at.y), fontsize=6)
         s += piece.length
     axis.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")

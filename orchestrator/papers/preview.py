@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controller_fmu.preview.params import ROAD
+from controller_fmu.preview.params import DEFAULT_ROAD
 from controller_fmu.preview.stage import PreviewStage
 from fmus.native.compilers import can_compile
 from orchestrator.cosim.slave import Array
@@ -32,14 +32,14 @@ PRINTED_SPEEDS = (7.6, 5.4, 3.8, 3.2)
 PRINTED_ANGLES = (-2.0, 2.0, -3.2, 4.1)
 """Largest epsL in the four curves [deg]; the first two are printed as bounds."""
 PRINTED_POINTS = (331.5, 350.6, 353.6, 508.6, 510.7)
-SAFE = 0.578
+SAFE_SPEED_FACTOR = 0.578
 """a of the safe speed sqrt(a / kappa) [m/s^2]."""
 CONSTRAINTS = (0.6, 0.9)
 """Range printed for k_v and k_d."""
-MARGIN = 0.7
+LATERAL_ACCELERATION_LIMIT = 0.7
 """A_y as printed."""
-GRAVITY = 9.81
-PERIOD = 0.8 * 8.0
+GRAVITY_ACCELERATION = 9.81
+NEAR_PREVIEW_DISTANCE = 0.8 * 8.0
 """Way [m] at 8 m/s in which L2 looks near."""
 NEAR_POINT = 0.15
 """What a distance between two points may differ by [m]; they are printed to 0.1 m."""
@@ -102,13 +102,15 @@ def friction_rows() -> list[Row]:
     factors k_v, k_d in 0.6..0.9 and A_y = 0.7 stand before the root, or under it, or A_y alone does.
     """
     forms: dict[str, Callable[[float], float]] = {
-        "k_v k_d A_y sqrt(mu g / kappa)": lambda k: (k * MARGIN) ** 2,
-        "k_v k_d sqrt(A_y mu g / kappa)": lambda k: k * k * MARGIN,
-        "sqrt(k_v k_d A_y mu g / kappa)": lambda k: k * MARGIN,
+        "k_v k_d A_y sqrt(mu g / kappa)": lambda k: (k * LATERAL_ACCELERATION_LIMIT) ** 2,
+        "k_v k_d sqrt(A_y mu g / kappa)": lambda k: k * k * LATERAL_ACCELERATION_LIMIT,
+        "sqrt(k_v k_d A_y mu g / kappa)": lambda k: k * LATERAL_ACCELERATION_LIMIT,
     }
     rows = []
     for form, share in forms.items():
-        low, high = (SAFE / (GRAVITY * share(k)) for k in (CONSTRAINTS[1] ** 2, CONSTRAINTS[0] ** 2))
+        low, high = (
+            SAFE_SPEED_FACTOR / (GRAVITY_ACCELERATION * share(k)) for k in (CONSTRAINTS[1] ** 2, CONSTRAINTS[0] ** 2)
+        )
         rows.append(Row("", f"(3) as {form}: mu_max that gives 0.578 m/s2", "", None, f"{low:.2f} to {high:.2f}"))
         item = f"(3) as {form}: some mu_max below 1 gives 0.578 m/s2"
         rows.append(yes_row("", item, 0.0 < low < 1.0, CONCLUSION))
@@ -118,7 +120,7 @@ def friction_rows() -> list[Row]:
 def curves() -> list[tuple[float, float, float]]:
     """Return start, end [m] and curvature [1/m] of every curve of the road."""
     found, s = [], 0.0
-    for piece in ROAD:
+    for piece in DEFAULT_ROAD:
         if piece.curvature != 0.0:
             found.append((s, s + piece.length, piece.curvature))
         s += piece.length
@@ -150,7 +152,7 @@ def _speeds(main: Driven) -> list[Row]:
         rows.append(Row(name, item, "m/s", printed, ours, SPEED_NEAR * printed, basis=PRINTED, differs=known))
     for number, (start, end, kappa) in enumerate(curves(), start=1):
         held = float(speed[(s > start + 0.5 * (end - start)) & (s < end - 3.0)].mean())
-        safe = math.sqrt(SAFE / abs(kappa))
+        safe = math.sqrt(SAFE_SPEED_FACTOR / abs(kappa))
         off = 100.0 * (held / safe - 1.0)
         rows.append(bound_row(name, f"steady speed off its set value in curve {number}", "%", SPEED_SHARE, off))
     straight = 100.0 * (float(speed[(s > 300.0) & (s < 330.0)].mean()) / 8.3 - 1.0)
@@ -246,7 +248,7 @@ def _points(eight: Driven) -> list[Row]:
     rows = [
         Row(name, f"{what}: {a} to {b}", "m", printed[b] - printed[a], at[b] - at[a], limit, basis=PRINTED)
         for a, b, what, limit in (
-            ("A", "C", "far L2 sees the curve, within a period of looking near", PERIOD),
+            ("A", "C", "far L2 sees the curve, within a period of looking near", NEAR_PREVIEW_DISTANCE),
             ("B", "C", "L1 is shortened before it meets the curve", NEAR_POINT),
             ("D", "E", "L1 is long again after it has left the curve", NEAR_POINT),
         )
@@ -283,7 +285,7 @@ def beside(driven: Driven) -> float:
     from controller_fmu.preview.road import lateral_offset, road_at, road_length
 
     signals = driven.recording.signals
-    end = road_at(ROAD, road_length(ROAD)).pose
+    end = road_at(DEFAULT_ROAD, road_length(DEFAULT_ROAD)).pose
     return lateral_offset(end, float(signals["vehicle.pose.x"][-1]), float(signals["vehicle.pose.y"][-1]))
 
 
@@ -297,7 +299,7 @@ def _single(main: Driven, single: Driven) -> list[Row]:
             row = int(np.flatnonzero((s > start - 15.0) & (angle > math.radians(0.2)))[0])
             name, before = driven.summary.scenario, start - float(s[row])
             rows.append(Row(name, f"steering starts before curve {number} by", "m", None, before))
-            share = float(signals["vehicle.speed"][row]) / math.sqrt(SAFE / abs(kappa))
+            share = float(signals["vehicle.speed"][row]) / math.sqrt(SAFE_SPEED_FACTOR / abs(kappa))
             rows.append(Row(name, f"speed over safe speed there, curve {number}", "1", None, share))
     lost = f"{single.summary.outcome} ({single.summary.reason}) at s = " + (
         f"{single.recording.signals['controller.preview.s'][-1]:.0f} m"

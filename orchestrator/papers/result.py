@@ -24,8 +24,8 @@ class Driven(NamedTuple):
 
 def in_line(scenario: Scenario) -> Scenario:
     """Return a scenario without our limit along the slot, of which the papers say nothing."""
-    limits = [item for item in scenario.limits if item.signal != "final.longitudinal_error"]
-    return scenario.with_limits(limits)
+    limits = [item for item in scenario.requirements if item.signal != "final.longitudinal_error"]
+    return scenario.with_requirements(limits)
 
 
 PRINTED = "printed number"

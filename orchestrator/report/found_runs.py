@@ -27,7 +27,7 @@ def _row(file: Path) -> dict[str, Any] | None:
         return {
             "time": started.get("time", ""),
             "scenario": str(summary["scenario"]),
-            "changed": changes_text(dict(summary["changed"])),
+            "overrides": changes_text(dict(summary["overrides"])),
             "outcome": str(summary["outcome"]),
             "reason": str(summary["reason"]),
             "duration": float(summary["duration"]),

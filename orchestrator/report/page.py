@@ -13,19 +13,21 @@ VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.j
 """What draws the top view, here and on the page that is driven."""
 CURVES = ("timeline.js", "curves.js", "plot.js", "chooser.js", "plots.js", "sheet.js", "keep.js")
 SCRIPTS = (*VIEW, *CURVES, "tables.js", "cards.js", "chart.js", "main.js")
-UPLOT = ROOM / "third_party" / "uplot"
+UPLOT_FOLDER = ROOM / "third_party" / "uplot"
 
 
 def page(title: str, data: str) -> str:
     """Return the page; ``title`` is plain text, ``data`` comes from ``payload.Arrays.pack``."""
-    uplot = UPLOT / "uPlot.iife.min.js"
-    licence = (UPLOT / "LICENSE").read_text(encoding="utf-8").strip()
-    library = f"/*!\nuPlot {(UPLOT / 'VERSION').read_text(encoding='utf-8').strip()}\n{licence}\n*/\n{_read(uplot)}"
+    uplot = UPLOT_FOLDER / "uPlot.iife.min.js"
+    licence = (UPLOT_FOLDER / "LICENSE").read_text(encoding="utf-8").strip()
+    library = (
+        f"/*!\nuPlot {(UPLOT_FOLDER / 'VERSION').read_text(encoding='utf-8').strip()}\n{licence}\n*/\n{_read(uplot)}"
+    )
     script = f'(() => {{\n"use strict";\n{scripts()}\n}})();\n'
     parts = {
         "TITLE": html.escape(title),
         "POLICY": policy([library, script]),
-        "STYLE": f"{_read(UPLOT / 'uPlot.min.css')}\n{style()}",
+        "STYLE": f"{_read(UPLOT_FOLDER / 'uPlot.min.css')}\n{style()}",
         "DATA": data,
         "LIBRARY": library,
         "SCRIPT": script,

@@ -15,7 +15,7 @@ from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.text.readable import changes_text, readable
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
@@ -58,7 +58,7 @@ def _page(
 ) -> str:
     arrays = Arrays()
     scenario = recording.info.get("scenario", {})
-    changes = changes_text(summary.changed)
+    changes = changes_text(summary.overrides)
     title = str(scenario.get("title") or summary.scenario) + (f" - with {changes}" if changes else "")
     about = scenario.get("description")
     about = f"unchanged: {about}" if changes and about else about
@@ -94,7 +94,7 @@ def facts(summary: Summary) -> list[list[str]]:
         *why,
         *(["Note", note] for note in summary.notes),
         ["Duration", f"{summary.duration:.2f} s"],
-        ["Shifts", "not counted" if summary.shifts is None else str(summary.shifts)],
+        ["Manoeuvres", "not counted" if summary.manoeuvres is None else str(summary.manoeuvres)],
         ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
         *_standing(summary.final, {check.signal for check in summary.checks}),
     ]
@@ -109,9 +109,9 @@ def _standing(final: Final, judged: set[str]) -> Iterator[list[str]]:
         free = "" if "final.longitudinal_error" in judged else " (free to choose)"
         yield ["From the target: across", length(final.lateral_error)]
         yield [f"along{free}", length(final.longitudinal_error)]
-        yield ["turned", f"{final.heading_error / DEGREE:+.2f}\u00b0"]
-    if math.isfinite(final.slot_margin):
-        yield ["Inside the slot by", length(final.slot_margin)]
+        yield ["turned", f"{final.heading_error / RAD_PER_DEGREE:+.2f}\u00b0"]
+    if math.isfinite(final.outline_margin):
+        yield ["Inside the slot by", length(final.outline_margin)]
 
 
 def length(value: float) -> str:
@@ -126,7 +126,7 @@ def check_rows(checks: list[Check]) -> list[dict[str, Any]]:
             "id": check.id,
             "passed": check.passed,
             "required": check.required,
-            "judged": check.judged,
+            "evaluated": check.evaluated,
             "value_text": check.note or readable(check.value, check.unit),
             "limit_text": limit_text(check),
             "margin_text": readable(check.margin, check.unit),

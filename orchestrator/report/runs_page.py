@@ -32,11 +32,11 @@ def _row(folder: Path, row: dict[str, Any]) -> str:
     picture = f'<img loading="lazy" alt="" src="{escape(here)}/{PICTURE}">' if (run / PICTURE).is_file() else ""
     target = f"{here}/{PAGE}" if (run / PAGE).is_file() else f"{here}/"
     log = f'<a href="{escape(here)}/{LOG}">log</a>' if (run / LOG).is_file() else ""
-    words = " ".join(str(row[key]) for key in ("scenario", "changed", "outcome", "path"))
+    words = " ".join(str(row[key]) for key in ("scenario", "overrides", "outcome", "path"))
     cells = (
         f'<a href="{escape(target)}">{picture or escape(here)}</a>',
         escape(row["time"]),
-        f'<a href="{escape(target)}">{escape(row["scenario"])}</a><br><code>{escape(row["changed"])}</code>',
+        f'<a href="{escape(target)}">{escape(row["scenario"])}</a><br><code>{escape(row["overrides"])}</code>',
         f'<b class="{escape(row["outcome"])}">{escape(row["outcome"])}</b><br>{escape(row["reason"])}',
         f"<code>{escape(row['command'])}</code><br>{escape(here)} {log}",
     )

@@ -33,7 +33,7 @@ def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
         "car": {"front": car.front, "rear": car.rear, "half": car.half_width, "wheelbase": car.wheelbase},
         "slot": _less(slot_box(slot).outline()[:4], origin) if slot else None,
         "target": [target.x - origin[0], target.y - origin[1], target.heading] if target else None,
-        "boxes": [_box(box, origin) for box in boxes(around)] + [_always(item, origin) for item in scenario.polygons],
+        "boxes": [_box(box, origin) for box in boxes(around)] + [_always(item, origin) for item in scenario.obstacles],
         "kerbs": [_less(np.array([[line.x1, line.y1], [line.x2, line.y2]]), origin) for line in kerbs(around)],
         "sensors": sensors(vehicle, recording.signals),
     }

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from orchestrator.cosim.slave import Array
 
-TOLERANCE = 1.0 / 500.0
+RANGE_TOLERANCE = 1.0 / 500.0
 """Share of a signal's range that straight lines between the kept instants may be off: under a pixel."""
-ROUNDS = 40
+MAX_ROUNDS = 40
 
 
 class Thinned(NamedTuple):
@@ -24,7 +24,7 @@ def thin(t: Array, lines: list[Array], steps: list[Array], keep: list[int], most
     """Return at most about ``most`` rows (more only if ``steps`` change more often) of signals over time ``t`` [s].
 
     All changes of ``steps`` (modes, flags) and the rows in ``keep`` stay. ``lines`` are continuous
-    signals: the row furthest from the straight line is added until all are within ``TOLERANCE``.
+    signals: the row furthest from the straight line is added until all are within ``RANGE_TOLERANCE``.
     """
     count = len(t)
     kept = np.zeros(count, dtype=bool)
@@ -38,9 +38,9 @@ def thin(t: Array, lines: list[Array], steps: list[Array], keep: list[int], most
     for values in scaled:
         kept[[int(np.argmin(values)), int(np.argmax(values))]] = True
     error = _error(t, scaled, kept)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         room = most - int(kept.sum())
-        if room <= 0 or not (error > TOLERANCE).any():
+        if room <= 0 or not (error > RANGE_TOLERANCE).any():
             break
         kept[_worst_of_each_gap(kept, error, room)] = True
         error = _error(t, scaled, kept)
@@ -65,5 +65,5 @@ def _worst_of_each_gap(kept: NDArray[np.bool_], error: Array, room: int) -> NDAr
     starts = np.flatnonzero(kept)
     worst = np.maximum.reduceat(error, starts)
     gap = np.cumsum(kept) - 1
-    candidates = np.flatnonzero((error > TOLERANCE) & (error == worst[gap]))
+    candidates = np.flatnonzero((error > RANGE_TOLERANCE) & (error == worst[gap]))
     return candidates[np.argsort(-error[candidates], kind="stable")][:room]

@@ -1,7 +1,7 @@
 """The car of a scenario: told once, for the vehicle and for what the controller believes.
 
 ``car: zhang2022`` is a shipped car, or a file, also a vehicle parameter file of CommonRoad.
-``car: {base: zhang2022, width: 1.9}`` is one with something changed,
+``car: {extends: zhang2022, width: 1.9}`` is one with something changed,
 ``car: {width: 1.9}`` changes the car that the base scenario has. What ``vehicle`` and ``controller`` say of their
 ``car`` themselves stands above it: so a controller believes something else than is true.
 """
@@ -21,7 +21,7 @@ from orchestrator.text.yaml_file import read_mapping
 
 CAR = variables(Car)
 FILE_KEYS = ("name", "title", "description", "source", "car", "vehicle")
-BASE = "base"
+BASE = "extends"
 Layer = tuple[dict[str, Any], object]
 """What one file says, and the file."""
 

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from modelkit.states import parts_of
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS, apart_models
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 
-UNBOUNDED = 1e300
+UNBOUNDED_LIMIT = 1e300
 
 
 class Entry(NamedTuple):
@@ -33,7 +33,7 @@ class Entry(NamedTuple):
     def plain(self) -> dict[str, Any]:
         """Return the entry as plain data; a range without an end has null there."""
         item = self.variable
-        low, high = (None if abs(end) > UNBOUNDED else end for end in (item.signal.low, item.signal.high))
+        low, high = (None if abs(end) > UNBOUNDED_LIMIT else end for end in (item.signal.low, item.signal.high))
         states = {state.name.lower(): int(state) for state in item.signal.states or ()}
         return {
             **{"name": self.name, "role": self.role, "type": item.kind.__name__, "unit": item.signal.unit},
@@ -109,18 +109,18 @@ def start_text(item: Variable) -> str:
     if item.kind is bool:
         return str(item.start).lower()
     if item.signal.unit.startswith("rad"):
-        return f"{item.start:.6g} ({item.start / DEGREE:.5g} {item.signal.unit.replace('rad', 'deg')})"
+        return f"{item.start:.6g} ({item.start / RAD_PER_DEGREE:.5g} {item.signal.unit.replace('rad', 'deg')})"
     return f"{item.start:.6g}"
 
 
 def range_text(item: Variable) -> str:
     """Return the range allowed, empty if there is none."""
     low, high = item.signal.low, item.signal.high
-    if low < -UNBOUNDED and high > UNBOUNDED:
+    if low < -UNBOUNDED_LIMIT and high > UNBOUNDED_LIMIT:
         return ""
-    if high > UNBOUNDED:
+    if high > UNBOUNDED_LIMIT:
         return f"from {low:g}"
-    return f"{low:g} to {high:g}" if low > -UNBOUNDED else f"to {high:g}"
+    return f"{low:g} to {high:g}" if low > -UNBOUNDED_LIMIT else f"to {high:g}"
 
 
 def texts_of(cls: type[Any]) -> dict[str, str]:

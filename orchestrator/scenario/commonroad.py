@@ -13,7 +13,7 @@ from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 
 STEERING_RATIO = 16.0
-GRAVITY = 9.81
+GRAVITY_ACCELERATION = 9.81
 TYRE = {"p_ky1": -21.92, "p_dy1": 1.0489}
 """Of the tyre that all its cars have, if the file has none of its own: slip stiffness over load, friction."""
 GROUPS = ("steering", "longitudinal", "tire")
@@ -114,7 +114,7 @@ def _car(p: Mapping[str, float], steering: Mapping[str, float]) -> dict[str, Any
 
 
 def _vehicle(p: Mapping[str, float], tyre: Mapping[str, float]) -> dict[str, Any]:
-    load = p["m"] * GRAVITY / (p["a"] + p["b"])
+    load = p["m"] * GRAVITY_ACCELERATION / (p["a"] + p["b"])
     front, share_front = _roll_stiffness(p["K_sf"], p["K_tsf"], p["K_zt"], p["T_f"])
     rear, share_rear = _roll_stiffness(p["K_sr"], p["K_tsr"], p["K_zt"], p["T_r"])
     return {

@@ -5,7 +5,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import NANOSECONDS, Seconds, Whole
+from orchestrator.text.quantities import NS_PER_SECOND, Seconds, Whole
 
 SPEED = "vehicle.speed"
 """The signal that tells how fast the car is [m/s]."""
@@ -22,11 +22,11 @@ class EndCondition(BaseModel):
 
     signal: str = "controller.phase"
     """The output that says how far the controller is."""
-    done: list[State] = Field(default=["PARKED"], min_length=1)
+    succeeded: list[State] = Field(default=["PARKED"], min_length=1)
     """Its states in which the controller says that it has done what it was asked for."""
     failed: list[State] = ["FAILED"]
     """Its states in which the controller has given up."""
-    over: list[State] = ["TAKEOVER"]
+    ended: list[State] = ["TAKEOVER"]
     """Its states in which the run is over but neither done nor failed."""
     reason: str = "controller.reason"
     """The output that says why the controller has given up."""
@@ -38,11 +38,11 @@ class EndCondition(BaseModel):
     @property
     def standstill_ns(self) -> int:
         """Return how long the car must stand [ns]."""
-        return round(self.standstill * NANOSECONDS)
+        return round(self.standstill * NS_PER_SECOND)
 
     def final(self, mode: Variable | None = None) -> tuple[int, ...]:
         """Return the values in which a run is over; ``mode`` is the signal as its FMU declares it."""
-        return tuple(self.values((*self.done, *self.failed, *self.over), mode))
+        return tuple(self.values((*self.succeeded, *self.failed, *self.ended), mode))
 
     def values(self, states: list[State] | tuple[State, ...], mode: Variable | None = None) -> list[int]:
         """Return the numbers of ``states``. Raises ``BadInput`` for a name that the signal has not.
@@ -57,7 +57,7 @@ class EndCondition(BaseModel):
                 continue
             if isinstance(word, str) and word not in numbers:
                 hint = suggestion_or_choices(word, list(numbers))
-                raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="ending")
+                raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="stop_condition")
             found.append(numbers[word] if isinstance(word, str) else word)
         return found
 

@@ -7,11 +7,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import Seconds, Until
 
-Kind = Literal["freeze", "override", "drop", "delay", "noise"]
+Kind = Literal["stuck_at_last", "override", "dropout", "delay", "noise"]
 NEEDS: dict[str, tuple[str, ...]] = {
-    "freeze": (),
+    "stuck_at_last": (),
     "override": ("value",),
-    "drop": ("probability",),
+    "dropout": ("probability",),
     "delay": ("delay",),
     "noise": ("sigma",),
 }
@@ -37,7 +37,7 @@ class Fault(BaseModel):
     sigma: float | str | None = None
     """noise: standard deviation, in the unit of the signal or with its own."""
     probability: float = Field(default=1.0, ge=0.0, le=1.0)
-    """drop: chance that an exchange is lost; the receiver keeps the value before."""
+    """dropout: chance that an exchange is lost; the receiver keeps the value before."""
 
     def check(self, file: object, key: str) -> None:
         """Raise ``BadInput`` if what its kind needs is missing, or its time is empty."""

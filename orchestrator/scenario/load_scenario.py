@@ -12,7 +12,7 @@ from orchestrator.scenario.car import CAR, Layer, told_car, with_said
 from orchestrator.scenario.files import find_file, shipped
 from orchestrator.scenario.flat_names import flatten_layer, flatten_section, merge_flat, merge_nested
 from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.polygons import map_of
+from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Parameter, Scenario, Target
 from orchestrator.scenario.slot_layout import KEY, expand_layouts
@@ -23,9 +23,9 @@ from orchestrator.text.errors import BadInput, shown, suggestion, suggestion_or_
 from orchestrator.text.quantities import text_or_scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
-NOT_WRITTEN = ("file", "changed", "left_out", "texts")
+NOT_WRITTEN = ("file", "overrides", "unsupported_parameters", "texts")
 FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene", KEY]
-INHERITED_NOT = ("name", "title", "description", "base")
+INHERITED_NOT = ("name", "title", "description", "extends")
 SETS = "--set"
 """Key of the uppermost layer with the words it was made from."""
 NOT_MERGED = (*MODELS, "scene", "car", SETS)
@@ -54,24 +54,24 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     ``more`` can be set besides the parameters of the models.
     """
     path, layers, merged = _read(name, list(sets))
-    more = _in_declared_units(more or {}, _in(_in(merged, "system"), "slaves"))
+    more = _in_declared_units(more or {}, _in(_in(merged, "system"), "components"))
     for key in INHERITED_NOT:
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
     merged.setdefault("name", path.stem)
     car = told_car([(content.get("car"), file) for content, file in layers], path.parent)
     merged["car"] = car.name
-    merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
+    merged["requirements"] = requirements_of(merged.get("requirements", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner, model in models_for(_asked(layers)).items():
         given = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
         merged[owner] = {key: value for key, value in given.items() if not isinstance(value, str)}
         texts = {key: value for key, value in given.items() if isinstance(value, str)}
         merged |= {"texts": {**merged.get("texts", {}), owner: texts}} if texts else {}
-    changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
+    overrides = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
         merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _written_in("target", layers, path))
-        scenario = Scenario(**merged, file=str(path), changed=changed)
+        scenario = Scenario(**merged, file=str(path), overrides=overrides)
     except ValidationError as error:
         raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
     return _with_parameters(scenario, more).model_copy(update={"controller": _told(scenario)})
@@ -92,7 +92,7 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     """Return (file, what it, its bases and ``sets`` say, lowest first, all of that merged but for parameters)."""
     path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
-    slaves = [str(slave) for content, _ in layers for slave in _in(_in(content, "system"), "slaves")]
+    slaves = [str(slave) for content, _ in layers for slave in _in(_in(content, "system"), "components")]
     layers.append((_set_layer(sets, slaves), "--set"))
     for content, file in layers:
         _check_keys([key for key in content if key != SETS], file)
@@ -128,7 +128,7 @@ def _with_parameters(scenario: Scenario, more: More) -> Scenario:
     if scenario.system is None:
         return scenario
     entries = {}
-    for name, entry in scenario.system.slaves.items():
+    for name, entry in scenario.system.components.items():
         known = [*(variables(MODELS[name].params) if name in MODELS else ()), *more.get(name, ())]
         given = entry.parameters
         if given and (name in MODELS or name in more):
@@ -136,7 +136,7 @@ def _with_parameters(scenario: Scenario, more: More) -> Scenario:
             by_name = {item.name: item for item in known}
             given = {key: _value(by_name[key], _Given(value, scenario.file), name) for key, value in flat.items()}
         entries[name] = entry.model_copy(update={"parameters": given})
-    return scenario.model_copy(update={"system": scenario.system.model_copy(update={"slaves": entries})})
+    return scenario.model_copy(update={"system": scenario.system.model_copy(update={"components": entries})})
 
 
 def _written_in(key: str, layers: list[Layer], path: Path) -> object:
@@ -164,9 +164,11 @@ def _told(scenario: Scenario) -> dict[str, float | int | bool]:
 def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
     """Return the file at ``path`` below it its bases, lowest first."""
     if path in seen:
-        raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
+        raise BadInput(
+            f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="extends"
+        )
     content = _placed(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
-    base = content.get("base")
+    base = content.get("extends")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
 
@@ -177,9 +179,9 @@ def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
     if not system:
         return content
     made = dict(system)
-    slaves = _in(system, "slaves")
+    slaves = _in(system, "components")
     if slaves:
-        made["slaves"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
+        made["components"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
     if isinstance(system.get("ssp"), str):
         file = path.parent / str(system["ssp"])
         if not file.is_file():
@@ -233,14 +235,14 @@ def _value(variable: Variable, given: object, owner: str) -> Parameter:
     return text_or_scalar(given.value, named, file=given.file)
 
 
-def limits_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
+def requirements_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
     """Return limits with the names of sets, or of files in ``folder``, replaced by their content."""
     if not isinstance(given, list):
-        raise BadInput(f"{shown(given)}: expected a list", file=file, key="limits")
+        raise BadInput(f"{shown(given)}: expected a list", file=file, key="requirements")
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
-            file = find_file(item, "limits", "set of limits", folder)
+            file = find_file(item, "requirements", "set of requirements", folder)
             entries = read_requirements(file)
             result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
         else:
@@ -258,7 +260,7 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
             raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example car.wheelbase=2.7", file="--set")
         parsed = read_value(value, key)
         owner, dot, name = key.partition(".")
-        if dot and owner in (*MODELS, "target", "slot", "scene", "every", KEY):
+        if dot and owner in (*MODELS, "target", "slot", "scene", "decimation", KEY):
             section = layer.setdefault(owner, {})
             if not isinstance(section, dict):
                 raise BadInput(f"{owner} is set as a whole and in parts", file="--set", key=key)
@@ -266,7 +268,7 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
         elif key == "car" or (dot and owner == "car"):
             layer["car"] = with_said(layer.get("car"), name, parsed)
         elif dot and owner in others:
-            slave = layer.setdefault("system", {}).setdefault("slaves", {}).setdefault(owner, {})
+            slave = layer.setdefault("system", {}).setdefault("components", {}).setdefault(owner, {})
             slave.setdefault("parameters", {})[name] = parsed
         else:
             layer[key] = parsed

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.polygons import static_obstacles
+from orchestrator.scenario.obstacle_map import static_obstacles
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, shown
 from orchestrator.text.quantities import number

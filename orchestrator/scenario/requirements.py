@@ -1,6 +1,6 @@
 """Requirements as data: a signal or a number of the summary, a condition, a window, a limit, a source.
 
-The limits of a scenario, the shipped sets in ``orchestrator/limits`` and the files of ``apa check``
+The limits of a scenario, the shipped sets in ``orchestrator/requirements`` and the files of ``apa check``
 are all lists of these.
 """
 
@@ -17,9 +17,9 @@ from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
-Where = Literal["target", "slot", "kerb", "polygons", "scene"]
+Where = Literal["target", "slot", "kerb", "obstacles", "scene"]
 """What a scenario may have; a kerb counts where it bounds the slot, ``scene`` is anything to touch."""
-LIMITS = Path(__file__).parent.parent / "limits"
+REQUIREMENT_SETS = Path(__file__).parent.parent / "requirements"
 """Where the shipped sets are."""
 
 
@@ -114,7 +114,7 @@ class Requirement(Limited):
     id: str
     """Name in tables and reports."""
     signal: str
-    """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``shifts``,
+    """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``manoeuvres``,
     ``duration``: one number of the summary."""
     max: float | None = None
     """The value is at most this."""
@@ -154,7 +154,7 @@ class Requirement(Limited):
 @cache
 def shipped_requirements(name: str, *ids: str) -> tuple[Requirement, ...]:
     """Return the shipped set of requirements of this name, or those called ``ids``. Raises ``KeyError``."""
-    found = {item.id: item for item in read_requirements(LIMITS / f"{name}.yaml")}
+    found = {item.id: item for item in read_requirements(REQUIREMENT_SETS / f"{name}.yaml")}
     return tuple(found[wanted] for wanted in ids or found)
 
 

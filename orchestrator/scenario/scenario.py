@@ -15,12 +15,12 @@ from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import NAME
-from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds
+from orchestrator.text.quantities import NS_PER_SECOND, Metres, Radians, Seconds
 
 Outcome = Literal["parked", "not_parked", "finished", "not_finished", "failed", "aborted"]
-Task = Literal["park", "drive", "run"]
-SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished", "run": "finished"}
-MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished", "run": "not_finished"}
+Task = Literal["park", "drive", "open_loop"]
+SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished", "open_loop": "finished"}
+MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished", "open_loop": "not_finished"}
 DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
 
@@ -85,17 +85,17 @@ class Scenario(_ScenarioPart):
     """What happens, in a few sentences."""
     source: str = ""
     """Paper, standard or request it comes from."""
-    base: str | None = None
+    extends: str | None = None
     """Shipped scenario, or file beside this one, that says all that this one does not."""
     car: str | None = None
     """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
     task: Task = "park"
-    """What the car is there for: `park`; `drive` along a road, out of a slot; `run`: to its time, within limits."""
+    """Purpose of the run: `park`; `drive` along a road or out of a slot; `open_loop`: to its stop time."""
     stop_time: Seconds | None = None
     """When the run ends at the latest [s]; if not said, 60 s, or what 30 m take at the driver's slowest speed."""
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
-    every: dict[str, int] = {}
+    decimation: dict[str, int] = {}
     """Decimation: the slave is stepped every n-th communication step."""
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
     """Of faults, and of every parameter called seed that the scenario does not set."""
@@ -109,41 +109,41 @@ class Scenario(_ScenarioPart):
     """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
     system: SystemText | None = None
     """Slaves, connections and roles, where it is not our vehicle and our controller, connected by equal names."""
-    polygons: list[list[tuple[Metres, Metres]]] = []
+    obstacles: list[list[tuple[Metres, Metres]]] = []
     """Things that stand there, convex or not, each by its corners [m]. The valet is told them as its map."""
     faults: list[Fault] = []
     """Disturbances of signals."""
-    limits: list[Requirement] = []
+    requirements: list[Requirement] = []
     """Requirements, and names of shipped sets of them; by default the set `house`."""
     contact_allowed: bool = False
     """Whether a run counts as parked, or finished, though the car touches something in the scene."""
-    ending: EndCondition = EndCondition()
+    stop_condition: EndCondition = EndCondition()
     """What ends the run before its stop time."""
-    expect: Outcome = "parked"
+    expected_outcome: Outcome = "parked"
     """The outcome this scenario is meant to have; if it says none, that its task is done."""
     file: str = ""
     """Where it came from."""
-    left_out: list[str] = []
+    unsupported_parameters: list[str] = []
     """Parameters that somebody else's FMU does not have, so that it is not given them; they stay true all the same."""
     texts: dict[str, dict[str, str]] = {}
     """Parameters of vehicle and controller that are texts, which FMUs of others may have."""
-    changed: dict[str, str] = {}
+    overrides: dict[str, str] = {}
     """What ``--set`` changed for one run, as it was written."""
 
     def given(self, slave: str) -> dict[str, Any]:
         """Return the parameters that a slave is given."""
         own = self.parameters_of(slave)
-        return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.left_out}
+        return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.unsupported_parameters}
 
     def parameters_of(self, slave: str) -> dict[str, Any]:
         """Return the parameters that the scenario has for a slave."""
-        entry = None if self.system is None else self.system.slaves.get(slave)
+        entry = None if self.system is None else self.system.components.get(slave)
         own = {**getattr(self, slave), **self.texts.get(slave, {})} if slave in MODELS else {}
         return {**(entry.parameters if entry else {}), **own}
 
     def as_written(self) -> dict[str, Any]:
         """Return what a scenario file says that stands on its own, but for the FMUs that a system names."""
-        unwritten = {"file", "base", "car", "changed", "left_out", "texts"}
+        unwritten = {"file", "extends", "car", "overrides", "unsupported_parameters", "texts"}
         content = self.model_dump(mode="python", exclude=unwritten, by_alias=True, exclude_none=True)
         for owner, texts in self.texts.items():
             content[owner] = {**content[owner], **texts}
@@ -162,12 +162,12 @@ class Scenario(_ScenarioPart):
     @property
     def step_ns(self) -> int:
         """Communication step [ns]."""
-        return round(self.step * NANOSECONDS)
+        return round(self.step * NS_PER_SECOND)
 
     @property
     def stop_ns(self) -> int:
         """Stop time [ns]; the last step is shorter if it is no whole number of steps."""
-        return round(self.longest * NANOSECONDS)
+        return round(self.longest * NS_PER_SECOND)
 
     @property
     def longest(self) -> float:
@@ -184,53 +184,53 @@ class Scenario(_ScenarioPart):
 
     @model_validator(mode="after")
     def _times(self) -> "Scenario":
-        exact = self.step * NANOSECONDS
+        exact = self.step * NS_PER_SECOND
         if exact < 1.0 or abs(exact - round(exact)) > 1e-6 * exact:
             raise BadInput(f"{self.step:g} s is not a whole positive number of nanoseconds", key="step")
         if self.step > LONGEST_STEP:
             raise BadInput(f"{self.step:g} s is more than {LONGEST_STEP:g} s", key="step")
         if self.stop_time is not None and not self.step <= self.stop_time <= 1e6:
             raise BadInput(f"{self.stop_time:g} s is not between one step and 1e6 s", key="stop_time")
-        for name, every in self.every.items():
+        for name, decimation in self.decimation.items():
             if name not in self.places:
-                raise BadInput(f"unknown; expected one of: {', '.join(self.places)}", key=f"every.{name}")
-            if not 1 <= every <= 1_000_000:
-                raise BadInput(f"{every} is not a whole number from 1 to 1000000", key=f"every.{name}")
-            if every * self.step > LONGEST_STEP:
-                text = f"{every} steps of {self.step:g} s are more than the {LONGEST_STEP:g} s of one step at most"
-                raise BadInput(text, key=f"every.{name}")
+                raise BadInput(f"unknown; expected one of: {', '.join(self.places)}", key=f"decimation.{name}")
+            if not 1 <= decimation <= 1_000_000:
+                raise BadInput(f"{decimation} is not a whole number from 1 to 1000000", key=f"decimation.{name}")
+            if decimation * self.step > LONGEST_STEP:
+                text = f"{decimation} steps of {self.step:g} s are more than the {LONGEST_STEP:g} s of one step at most"
+                raise BadInput(text, key=f"decimation.{name}")
         return self
 
     @model_validator(mode="after")
     def _polygons(self) -> "Scenario":
-        for number, corners in enumerate(self.polygons, start=1):
+        for number, corners in enumerate(self.obstacles, start=1):
             if len(corners) < LEAST_CORNERS:
                 text = f"{len(corners)} corners: expected {LEAST_CORNERS} or more"
-                raise BadInput(text, key=f"polygons[{number}]")
+                raise BadInput(text, key=f"obstacles[{number}]")
         return self
 
     @model_validator(mode="after")
     def _parked(self) -> "Scenario":
         """Add what counts as parked everywhere, unless the limits say it of the same number themselves."""
-        named = {limit.signal for limit in self.limits}
+        named = {limit.signal for limit in self.requirements}
         missing = [item for item in shipped_requirements("parked") if item.signal not in named]
         if missing:
-            self.limits = [*self.limits, *missing]
+            self.requirements = [*self.requirements, *missing]
         return self
 
     @model_validator(mode="after")
     def _contact_free(self) -> "Scenario":
         """Add the rule on contact, whatever the limits are; no limit takes its place."""
-        self.limits = self._and_contact_free(self.limits)
+        self.requirements = self._and_contact_free(self.requirements)
         return self
 
     def _and_contact_free(self, limits: list[Requirement]) -> list[Requirement]:
         rule = self.contact_rule
         return [*(limit for limit in limits if limit.id != rule.id), rule]
 
-    def with_limits(self, limits: Iterable[Requirement]) -> "Scenario":
+    def with_requirements(self, limits: Iterable[Requirement]) -> "Scenario":
         """Return the scenario judged by other limits; the rule on contact stays."""
-        return self.model_copy(update={"limits": self._and_contact_free(list(limits))})
+        return self.model_copy(update={"requirements": self._and_contact_free(list(limits))})
 
     @property
     def contact_rule(self) -> Requirement:
@@ -242,9 +242,11 @@ class Scenario(_ScenarioPart):
 
     @model_validator(mode="after")
     def _outcome(self) -> "Scenario":
-        if "expect" not in self.model_fields_set:
-            self.expect = SUCCESS[self.task]
-        if self.expect not in (SUCCESS[self.task], MISSED[self.task], "failed", "aborted"):
+        if "expected_outcome" not in self.model_fields_set:
+            self.expected_outcome = SUCCESS[self.task]
+        if self.expected_outcome not in (SUCCESS[self.task], MISSED[self.task], "failed", "aborted"):
             known = f"{SUCCESS[self.task]}, {MISSED[self.task]}, failed or aborted"
-            raise BadInput(f"{self.expect!r} is no outcome of task {self.task}, expected {known}", key="expect")
+            raise BadInput(
+                f"{self.expected_outcome!r} is no outcome of task {self.task}, expected {known}", key="expected_outcome"
+            )
         return self

@@ -22,7 +22,7 @@ GENERATED = ("slot", "target")
 """Keys of a scenario that a layout generates besides boxes and kerbs of its scene."""
 KERB_MARGIN = 10.0
 """The kerb reaches this far beyond the last car of the row [m]."""
-DECIMALS = 12
+POSITION_DECIMALS = 12
 """Positions are rounded to a picometre, so that sums of decimal numbers stay decimal."""
 Positive = Annotated[Metres, Field(gt=0.0)]
 NotNegative = Annotated[Metres, Field(ge=0.0)]
@@ -198,13 +198,13 @@ def _target(layout: SlotLayout) -> dict[str, Any]:
     middle = 0.5 * layout.length
     if layout.kind == "parallel":
         of = "left" if layout.side == "right" else "right"
-        return {"of": of, **_at(layout, middle, 0.0), "heading": _heading(layout)}
+        return {"reference_point": of, **_at(layout, middle, 0.0), "heading": _heading(layout)}
     turn = math.pi if layout.nose_in else 0.0
     place = (middle, 0.0)
     if layout.kind == "angled":
         place = _along_axis(layout, middle, layout.length * _axis(layout).sin, 0.0, 0.0)
     of = "rear" if layout.nose_in else "front"
-    return {"of": of, **_at(layout, *place), "heading": _heading(layout) + turn}
+    return {"reference_point": of, **_at(layout, *place), "heading": _heading(layout) + turn}
 
 
 def _along_axis(layout: SlotLayout, s: float, width: float, inside: float, setback: float) -> tuple[float, float]:
@@ -241,7 +241,7 @@ def _at(layout: SlotLayout, s: float, d: float) -> dict[str, float]:
     left = -d if layout.side == "right" else d
     c, n = math.cos(layout.origin.heading), math.sin(layout.origin.heading)
     x, y = layout.origin.x + s * c - left * n, layout.origin.y + s * n + left * c
-    return {"x": round(x, DECIMALS), "y": round(y, DECIMALS)}
+    return {"x": round(x, POSITION_DECIMALS), "y": round(y, POSITION_DECIMALS)}
 
 
 def _check_capacity(array: str, count: int, file: object) -> None:

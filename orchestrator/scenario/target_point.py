@@ -1,7 +1,7 @@
-"""A target told by a point of the car's outline, so that it means the same place for cars of any size.
+"""A target given by a point of the car's outline, so that it means the same place for cars of any size.
 
-``target: {of: left, x: 3.1, y: 0}`` has the middle of the car's left side there, whatever its length and width; from
-that, and the car of the vehicle, follows the pose of the rear axle, which is the target in all that comes after.
+``target: {reference_point: left, x: 3.1, y: 0}`` places the middle of the car's left
+side there, whatever its length and width. The pose of the rear axle follows from it and from the car of the vehicle.
 """
 
 import math
@@ -13,19 +13,21 @@ from modelkit.variables import with_values
 from orchestrator.scenario.scenario import Target
 from orchestrator.text.errors import BadInput, shown
 
-OF = "of"
+REFERENCE_POINT = "reference_point"
 POINTS = ("rear_axle", "front", "rear", "left", "right", "middle")
 """Middle of the rear axle, of the bumpers, of the sides, of the outline."""
 
 
 def as_rear_axle(target: object, vehicle: Mapping[str, Any], file: object) -> object:
-    """Return a target without ``of``: the pose of the rear axle of a vehicle with these parameters."""
-    if not isinstance(target, Mapping) or OF not in target:
+    """Return a target without ``reference_point``: the pose of the rear axle of a vehicle with these parameters."""
+    if not isinstance(target, Mapping) or REFERENCE_POINT not in target:
         return target
-    point = target[OF]
+    point = target[REFERENCE_POINT]
     if point not in POINTS:
-        raise BadInput(f"{shown(point)}: expected one of {', '.join(POINTS)}", file=file, key=f"target.{OF}")
-    meant = Target.model_validate({name: value for name, value in target.items() if name != OF})
+        raise BadInput(
+            f"{shown(point)}: expected one of {', '.join(POINTS)}", file=file, key=f"target.{REFERENCE_POINT}"
+        )
+    meant = Target.model_validate({name: value for name, value in target.items() if name != REFERENCE_POINT})
     own = {name.removeprefix("car."): value for name, value in vehicle.items() if name.startswith("car.")}
     along, left = _offset(str(point), with_values(Car, own))
     c, s = math.cos(meant.heading), math.sin(meant.heading)

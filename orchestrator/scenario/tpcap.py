@@ -11,8 +11,8 @@ from typing import Any
 from orchestrator.text.errors import BadInput
 
 STOP_TIME = 400.0
-MARGIN = 0.1
-SHIFTS = 30
+PLAN_MARGIN = 0.1
+MAX_MANOEUVRES = 30
 
 
 def read_tpcap(path: Path) -> dict[str, Any]:
@@ -41,11 +41,11 @@ def read_tpcap(path: Path) -> dict[str, Any]:
         "car": "tpcap",
         "stop_time": STOP_TIME,
         "target": {"x": 0.0, "y": 0.0, "heading": goal[2]},
-        "polygons": [points[end - size : end] for end, size in zip(ends, sizes, strict=True)],
+        "obstacles": [points[end - size : end] for end, size in zip(ends, sizes, strict=True)],
         "vehicle": {"start": {"x": start[0] - goal[0], "y": start[1] - goal[1], "heading": start[2]}},
-        "controller": {"system": "valet", "plan": {"margin": MARGIN, "curvature_share": 1.0}},
-        "limits": ["valet"],
-        "expect": "parked",
+        "controller": {"system": "valet", "plan": {"margin": PLAN_MARGIN, "curvature_share": 1.0}},
+        "requirements": ["valet"],
+        "expected_outcome": "parked",
     }
 
 

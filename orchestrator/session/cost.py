@@ -5,11 +5,11 @@ import tempfile
 
 from orchestrator.text.errors import BadInput
 
-VALUE = 8
+BYTES_PER_VALUE = 8
 """Bytes of a value in the scratch file."""
-LOGGED = 2.5
+LOG_BYTES_PER_VALUE = 2.5
 """Bytes of a value in the log, about."""
-MANY = 1_000_000
+WARNED_EXCHANGES = 1_000_000
 """Exchanges from which the cost is told: over a minute where every exchange is made in Python."""
 MAX_BYTES = 1e12
 """A run that may write a larger log is refused: no computer that parks cars has the room."""
@@ -20,11 +20,11 @@ def told_cost(exchanges: int, values: int) -> str:
 
     Raises ``BadInput`` if it is more than a computer has.
     """
-    log, scratch = exchanges * values * LOGGED, exchanges * values * VALUE
+    log, scratch = exchanges * values * LOG_BYTES_PER_VALUE, exchanges * values * BYTES_PER_VALUE
     text = f"{exchanges:.2g} exchanges: up to {size(log)} of log and {size(scratch)} of scratch space"
     if log > MAX_BYTES:
         raise BadInput(f"{text}; make step larger or stop_time shorter", key="step")
-    if exchanges <= MANY:
+    if exchanges <= WARNED_EXCHANGES:
         return ""
     left = scratch_left()
     short = f" ({tempfile.gettempdir()} has {size(left)} left)" if left is not None and scratch > left else ""

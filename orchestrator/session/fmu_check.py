@@ -25,7 +25,7 @@ from orchestrator.system.signal_matching import Signals, match_signals
 from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
 from orchestrator.text.failures import reason_of
 
-SHOWN = 6
+MAX_SHOWN = 6
 
 
 class FmuReport(NamedTuple):
@@ -76,7 +76,7 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
         system, problems = _assembled(fitting.scenario, slaves)
         problems += _loading(slave) if loads else []
         remarks = [] if system is None else loops(system)
-        remarks += _left_out(fitting.left_out, place)
+        remarks += _left_out(fitting.unsupported_parameters, place)
         return FmuReport(
             _about(path, names, description),
             place,
@@ -84,7 +84,7 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
             [] if system is None else _not_fed(system, slave),
             _not_understood(system, slave, description),
             unsaid(slave),
-            _missing(slave, fitting.scenario.ending),
+            _missing(slave, fitting.scenario.stop_condition),
             problems,
             remarks,
         )
@@ -125,8 +125,8 @@ def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:
 
 def _left_out(names: list[str], place: str) -> list[str]:
     own = [name.removeprefix(f"{place}.") for name in names if name.startswith(f"{place}.")]
-    more = f" and {len(own) - SHOWN} more" if len(own) > SHOWN else ""
-    return [f"it has no parameters {', '.join(own[:SHOWN])}{more}: they are left out"] if own else []
+    more = f" and {len(own) - MAX_SHOWN} more" if len(own) > MAX_SHOWN else ""
+    return [f"it has no parameters {', '.join(own[:MAX_SHOWN])}{more}: they are left out"] if own else []
 
 
 def _assembled(scenario: Scenario, slaves: list[Slave]) -> tuple[Assembled | None, list[str]]:

@@ -78,7 +78,7 @@ class Fitting(NamedTuple):
     """A scenario with the FMUs of somebody else's that it is run with."""
 
     scenario: Scenario
-    left_out: list[str]
+    unsupported_parameters: list[str]
     """Parameters of the scenario that those do not have."""
     foreign: Foreign
 
@@ -156,7 +156,7 @@ def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scen
     for slave, items in own.items():
         known = {item.name for item in items}
         ignored += [f"{slave}.{name}" for name in scenario.parameters_of(slave) if name not in known]
-    return scenario.model_copy(update={"left_out": ignored}), ignored
+    return scenario.model_copy(update={"unsupported_parameters": ignored}), ignored
 
 
 def sha256_of(path: Path) -> str:

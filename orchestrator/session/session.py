@@ -24,7 +24,7 @@ from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
-from orchestrator.text.quantities import NANOSECONDS
+from orchestrator.text.quantities import NS_PER_SECOND
 
 if TYPE_CHECKING:
     from orchestrator.log.mcap_log import McapLog
@@ -195,12 +195,12 @@ def _begun_log(
 def _reachable_stop_ns(system: Assembled, scenario: Scenario) -> int:
     """Return the stop time [ns]; the last one that all FMUs of a fixed communication step reach, if there are any."""
     steps = [
-        scenario.step_ns * scenario.every.get(item.name, 1) for item in system.slaves if not item.has_variable_step
+        scenario.step_ns * scenario.decimation.get(item.name, 1) for item in system.slaves if not item.has_variable_step
     ]
     common = math.lcm(*steps)
     stop_ns = scenario.stop_ns // common * common
     if not stop_ns:
-        text = f"{scenario.longest:.9g} s is less than the {common / NANOSECONDS:.9g} s which {_fixed(system)} needs"
+        text = f"{scenario.longest:.9g} s is less than the {common / NS_PER_SECOND:.9g} s which {_fixed(system)} needs"
         raise BadInput(text, file=scenario.file, key="stop_time")
     return stop_ns
 
@@ -214,13 +214,13 @@ def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str
     if stop_ns == scenario.stop_ns:
         return []
     text = f"stop_time {scenario.longest:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
-    return [f"{text}: a run ends at {stop_ns / NANOSECONDS:.9g} s"]
+    return [f"{text}: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"]
 
 
 def _warnings(system: Assembled, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:
     """Return what is allowed in a system but hardly meant, or costly."""
     cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
-    ending = scenario.ending if scenario.task != "run" else None
+    ending = scenario.stop_condition if scenario.task != "open_loop" else None
     ignored = scenario.system.ignored if scenario.system is not None else []
     early = _early_stop(system, scenario, stop_ns)
     return [*remarks(system, ending, ignored), *early, *implausible(scenario), *([cost] if cost else [])]
@@ -249,9 +249,9 @@ def _master(system: Assembled, scenario: Scenario, stop_ns: int, kind: str) -> M
         from orchestrator.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
-    master = make(system.slaves, scenario.step_ns, stop_ns, scenario.every, system.connections)
+    master = make(system.slaves, scenario.step_ns, stop_ns, scenario.decimation, system.connections)
     master.manipulators += manipulators(scenario.faults, master, scenario.seed, scenario.file)
-    ending = standstill(scenario.ending, system.slaves) if scenario.task != "run" else None
+    ending = standstill(scenario.stop_condition, system.slaves) if scenario.task != "open_loop" else None
     if ending is not None:
         master.endings.append(ending)
     return master

@@ -9,8 +9,8 @@ from rich.table import Table
 
 from orchestrator.comparison.compare import Difference
 from orchestrator.text.console import console
-from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import changes_text, precise, readable, shifts_text
+from orchestrator.text.quantities import RAD_PER_DEGREE
+from orchestrator.text.readable import changes_text, manoeuvres_text, precise, readable
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Final, Summary
@@ -25,11 +25,12 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
     style = COLOURS[summary.outcome]
     wanted = "" if summary.outcome == expected else f"  (expected: {expected})"
     out.print(f"[bold]{summary.scenario}[/]  {escape(title)}".rstrip())
-    if changes_text(summary.changed):
-        out.print(f"changed: {escape(changes_text(summary.changed))}")
+    if changes_text(summary.overrides):
+        out.print(f"overrides: {escape(changes_text(summary.overrides))}")
     out.print(f"[{style}]{summary.outcome}[/]: {escape(summary.headline)}{wanted}")
     out.print(
-        f"{summary.duration:.2f} s, {shifts_text(summary.shifts)}, up to {summary.max_speed:.2f} m/s; at the end "
+        f"{summary.duration:.2f} s, {manoeuvres_text(summary.manoeuvres)}, up to {summary.max_speed:.2f} m/s; "
+        + "at the end "
         + ", ".join(_at_the_end(summary.final))
     )
     for note in summary.notes:
@@ -53,11 +54,11 @@ def _at_the_end(final: Final) -> Iterator[str]:
     if math.isfinite(final.lateral_error):
         yield f"{final.lateral_error * 100:+.1f} cm lateral"
         yield f"{final.longitudinal_error * 100:+.1f} cm longitudinal"
-        yield f"{final.heading_error / DEGREE:+.2f} deg"
-    if math.isfinite(final.slot_margin):
-        side = "inside" if final.slot_margin >= 0.0 else "beyond"
-        yield f"outline {abs(final.slot_margin) * 100:.1f} cm {side} the slot boundary"
-    yield f"wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
+        yield f"{final.heading_error / RAD_PER_DEGREE:+.2f} deg"
+    if math.isfinite(final.outline_margin):
+        side = "inside" if final.outline_margin >= 0.0 else "beyond"
+        yield f"outline {abs(final.outline_margin) * 100:.1f} cm {side} the slot boundary"
+    yield f"wheel {final.steering_wheel_angle / RAD_PER_DEGREE:+.1f} deg"
 
 
 ALLOWED = "allowed: "
@@ -74,7 +75,7 @@ def checks_table(checks: list[Check], out: Console) -> Table:
         verdict = "[green]pass[/]" if check.passed else "[red]FAIL[/]" if check.required else "[yellow]fail[/]"
         if check.source.startswith(ALLOWED) and not check.passed:
             verdict = "[yellow]allowed[/]"
-        verdict = verdict if check.judged else "[yellow]not evaluated[/]"
+        verdict = verdict if check.evaluated else "[yellow]not evaluated[/]"
         value = check.note or readable(check.value, check.unit)
         table.add_row(
             escape(check.id),

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from orchestrator.scenario.models import MODELS
 from orchestrator.steptest.expectation import Expectation
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import NANOSECONDS, Seconds
+from orchestrator.text.quantities import NS_PER_SECOND, Seconds
 from orchestrator.text.yaml_file import explain, read_mapping
 
 MARK = "model"
@@ -69,12 +69,12 @@ class StepTest(BaseModel):
     @property
     def step_ns(self) -> int:
         """Communication step [ns]."""
-        return round(self.step * NANOSECONDS)
+        return round(self.step * NS_PER_SECOND)
 
     @property
     def stop_ns(self) -> int:
         """End of the test [ns]; the last step is shorter if it is no whole number of steps."""
-        stop_ns = self.stop_time * NANOSECONDS
+        stop_ns = self.stop_time * NS_PER_SECOND
         whole = int(stop_ns / self.step_ns + 0.5) * self.step_ns
         return whole if abs(whole - stop_ns) <= WITHIN_NS else round(stop_ns)
 

@@ -10,7 +10,7 @@ from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, shown, suggestion
-from orchestrator.text.quantities import FACTORS, NANOSECONDS, number, scalar, unit_symbol
+from orchestrator.text.quantities import FACTORS, NS_PER_SECOND, number, scalar, unit_symbol
 from orchestrator.text.table_file import TableError, TextTable, read_table, unit_in_name
 
 
@@ -165,7 +165,11 @@ def _along(times: Array, values: list[float], place: StimulatedInput, t: Array) 
     """Return the values at ``t``: those of rows at just this nanosecond as they are, of several the last."""
     if len(times) == 0 or (np.diff(times) < 0.0).any():
         raise place.wrong("times have to rise from row to row")
-    rows_ns, t_ns, given = np.rint(times * NANOSECONDS), np.rint(t * NANOSECONDS), np.asarray(values, dtype=np.float64)
+    rows_ns, t_ns, given = (
+        np.rint(times * NS_PER_SECOND),
+        np.rint(t * NS_PER_SECOND),
+        np.asarray(values, dtype=np.float64),
+    )
     before = np.maximum(np.searchsorted(rows_ns, t_ns, side="right") - 1, 0)
     if place.variable.kind is not float:
         return given[before]

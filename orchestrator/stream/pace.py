@@ -9,7 +9,7 @@ import numpy as np
 
 from orchestrator.cosim.master import End
 
-LATE = 1e-3
+LATE_THRESHOLD = 1e-3
 """An exchange later than this [s] counts as late."""
 
 
@@ -41,7 +41,7 @@ class Pace:
         median, high = (float(value) for value in np.quantile(late, (0.5, 0.99)))
         return {
             "exchanges": len(self._late),
-            "late": int((late > LATE).sum()),
+            "late": int((late > LATE_THRESHOLD).sum()),
             "median": median,
             "percentile_99": high,
             "largest": float(late.max()),

@@ -13,7 +13,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import SUCCESS, Scenario
 from orchestrator.suite.suite import Tested
-from orchestrator.text.readable import changes_text, shifts_text
+from orchestrator.text.readable import changes_text, manoeuvres_text
 from orchestrator.verdict.geometry import CarOutline, described, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
@@ -46,11 +46,11 @@ def _card(item: Tested) -> str:
     name = item.scenario.name
     missed = [f"{case.name}: {case.text}" for case in item.cases if not case.passed and not case.skipped]
     missed += [item.error] if item.error else []
-    summary, changes = item.summary, changes_text(item.scenario.changed)
+    summary, changes = item.summary, changes_text(item.scenario.overrides)
     outcome = ""
     if summary:
         outcome = f"{summary.outcome.replace('_', ' ')}{_expected(item, summary.outcome)}"
-        outcome += f", {summary.duration:.1f} s, {shifts_text(summary.shifts)}"
+        outcome += f", {summary.duration:.1f} s, {manoeuvres_text(summary.manoeuvres)}"
     return CARD.format(
         kind="good" if item.passed else "bad",
         verdict="not run" if item.could_not_run else "pass" if item.passed else "fail",
@@ -66,7 +66,7 @@ def _card(item: Tested) -> str:
 def _expected(item: Tested, outcome: str) -> str:
     """Return what the scenario expects, where the outcome alone does not say why the test passed or failed."""
     scenario = item.scenario
-    wanted = scenario.expect or SUCCESS[scenario.task]
+    wanted = scenario.expected_outcome or SUCCESS[scenario.task]
     if outcome == wanted:
         return "" if outcome == SUCCESS[scenario.task] else " as expected"
     return "" if item.passed else f" (expected: {wanted.replace('_', ' ')})"

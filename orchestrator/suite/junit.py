@@ -42,7 +42,7 @@ def cases_of(checks: list[Check]) -> list[Case]:
     """Return one case for each check; one that is missed but not required, or not judged, is skipped, not failed."""
     found = []
     for check in checks:
-        skipped = not check.judged or not (check.passed or check.required)
+        skipped = not check.evaluated or not (check.passed or check.required)
         found.append(Case(f"{check.id} ({check.source})", check.passed, sentence(check), skipped))
     return found
 

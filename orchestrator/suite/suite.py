@@ -33,7 +33,7 @@ from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.summary import Summary, summarize
 
 CLAIMING = Lock()
-PATIENCE = 0.2
+POLL_INTERVAL = 0.2
 """Between two looks for Ctrl-C [s]."""
 MOST_LETTERS = 100
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
@@ -67,7 +67,7 @@ class Tested(NamedTuple):
         """Return the verdict for JUnit."""
         time = self.summary.wall_time if self.summary else 0.0
         notes = {
-            "changed": changes_text(self.scenario.changed),
+            "overrides": changes_text(self.scenario.overrides),
             "left out": ", ".join(self.ignored),
             "warning": "; ".join(self.remarks),
             **fmus_of(self),
@@ -118,7 +118,7 @@ def run_tests(names: list[str], sets: list[str], bench: Bench, out: Path, jobs: 
         running = [pool.submit(copy_context().run, run_test, name, sets, bench, out, taken) for name in names]
         for future in running:
             while not future.done() and not bench.interrupt.requested:
-                wait([future], PATIENCE)
+                wait([future], POLL_INTERVAL)
             if bench.interrupt.requested:
                 pool.shutdown(wait=True, cancel_futures=True)
             if not future.cancelled():
@@ -178,7 +178,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
         if is_shown(ran.recording):
             judged = summary.model_copy(update={"checks": [*summary.checks, *checks]})
             write_page(folder, ran.recording, judged, ran.lines)
-    broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
+    broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expected_outcome != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
 
@@ -227,8 +227,8 @@ def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> lis
 
 def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Case]:
     """Return the outcome, the limits (where the task shall be done), contact, and all further requirements as cases."""
-    reached = f"{summary.outcome}: {summary.headline}; expected {scenario.expect}"
-    outcome = Case("outcome", summary.outcome == scenario.expect, reached)
+    reached = f"{summary.outcome}: {summary.headline}; expected {scenario.expected_outcome}"
+    outcome = Case("outcome", summary.outcome == scenario.expected_outcome, reached)
     contact = [check for check in summary.checks if check.id == scenario.contact_rule.id]
-    own = cases_of(summary.checks if scenario.expect == scenario.success else contact)
+    own = cases_of(summary.checks if scenario.expected_outcome == scenario.success else contact)
     return told_apart([outcome, *own, *cases_of(extra)])

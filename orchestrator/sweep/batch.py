@@ -76,7 +76,7 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
 
     ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
     """
-    ending, models = scenario.ending, tuple(scenario.models.items())
+    ending, models = scenario.stop_condition, tuple(scenario.models.items())
     faults = tuple(item.inputs for item in heard(scenario))
     with _compiling:
         return _compiled(
@@ -87,7 +87,7 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    models, end = dict(scenario.models), scenario.ending
+    models, end = dict(scenario.models), scenario.stop_condition
     ending = Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
     used = used_signals(ending, [_kept(item) for item in job.measures])
     slices = study_slices(models, used, dict(choices_of(scenario, arrays(job, chunk)[0])))

@@ -22,7 +22,7 @@ from orchestrator.verdict.truth import Bools
 
 WITHIN = "within {}"
 """Name of the column that says whether a run is within a set of limits; one in contact is within none."""
-COUNTS = ("shifts",)
+COUNTS = ("manoeuvres",)
 """Numbers that are counts."""
 KINDS = {"U": str, "f": float, "i": int, "b": bool}
 """Kind of a numpy array -> type of what it holds."""

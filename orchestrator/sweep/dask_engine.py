@@ -13,12 +13,12 @@ from typing import Any
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
 from orchestrator.sweep.dask_cluster import PrivateCluster
-from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Result, cores, rows_or_reason
+from orchestrator.sweep.engine import CHUNKS_PER_WORKER, POLL_INTERVAL, ChunkTask, Result, cores, rows_or_reason
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 
 distributed: Any = importlib.import_module("distributed")
-CONNECT = 10.0
+CONNECT_TIMEOUT = 10.0
 """How long to look for the scheduler [s]."""
 
 
@@ -30,7 +30,7 @@ class DaskEngine:
         self._cluster = PrivateCluster(workers or cores()) if address is None else None
         try:
             place = address if self._cluster is None else self._cluster.cluster
-            self._client = distributed.Client(place, timeout=CONNECT, set_as_default=False)
+            self._client = distributed.Client(place, timeout=CONNECT_TIMEOUT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
             raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
@@ -50,7 +50,7 @@ class DaskEngine:
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         waiting: dict[Any, tuple[Any, Chunk]] = {}
         while True:
-            while len(waiting) < AHEAD * self.workers and not interrupt.requested:
+            while len(waiting) < CHUNKS_PER_WORKER * self.workers and not interrupt.requested:
                 chunk = next(chunks, None)
                 if chunk is None:
                     break
@@ -60,7 +60,7 @@ class DaskEngine:
             if not waiting or interrupt.requested:
                 return
             with suppress(queue.Empty):
-                future, chunk = waiting.pop(done.get(timeout=POLL).key)
+                future, chunk = waiting.pop(done.get(timeout=POLL_INTERVAL).key)
                 yield chunk, rows_or_reason(future.result, len(chunk.seeds))
 
     def _check_sources(self) -> None:

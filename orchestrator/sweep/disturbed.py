@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fmus.compiled_batch import FAULT_NUMBERS, Disturbed
 from modelkit.variables import Variable
-from orchestrator.cosim.faults import SEEDS, receivers
+from orchestrator.cosim.faults import SEED_STRIDE, receivers
 from orchestrator.cosim.master import Master
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.fault import Fault
@@ -18,12 +18,12 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import Messages, make_slaves
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.system.assemble import assemble
-from orchestrator.text.quantities import NANOSECONDS, number, scalar
+from orchestrator.text.quantities import NS_PER_SECOND, number, scalar
 
 SYSTEM = "system"
 """The controller's parameter that says which model it is, and so which inputs there are."""
 NEVER_NS = float(1 << 62)
-LONGEST = 1e9
+NEVER_TIME = 1e9
 """A stop later than this [s] never comes."""
 
 
@@ -76,16 +76,18 @@ def numbers_for(
     for count, item in enumerate(hearers):
         fault = scenario.faults[item.fault]
         start, stop = (varied.get((item.fault, name), getattr(fault, name)) for name in ("start", "stop"))
-        found[:, count, 0] = np.round(np.asarray(start) * NANOSECONDS)
-        found[:, count, 1] = np.where(np.asarray(stop) > LONGEST, NEVER_NS, np.round(np.asarray(stop) * NANOSECONDS))
+        found[:, count, 0] = np.round(np.asarray(start) * NS_PER_SECOND)
+        found[:, count, 1] = np.where(
+            np.asarray(stop) > NEVER_TIME, NEVER_NS, np.round(np.asarray(stop) * NS_PER_SECOND)
+        )
         name = AMOUNT[fault.kind]
         amount = varied.get((item.fault, name), _amount(fault, item.first)) if name else 0.0
-        found[:, count, 2] = np.round(np.asarray(amount) * NANOSECONDS) if fault.kind == "delay" else amount
-        found[:, count, 3] = seeds * SEEDS + count
+        found[:, count, 2] = np.round(np.asarray(amount) * NS_PER_SECOND) if fault.kind == "delay" else amount
+        found[:, count, 3] = seeds * SEED_STRIDE + count
     return np.ascontiguousarray(found.reshape(len(seeds), -1))
 
 
-AMOUNT = {"override": "value", "freeze": "", "drop": "probability", "delay": "delay", "noise": "sigma"}
+AMOUNT = {"override": "value", "stuck_at_last": "", "dropout": "probability", "delay": "delay", "noise": "sigma"}
 """Kind -> the number that it needs."""
 
 

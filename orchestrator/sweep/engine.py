@@ -15,9 +15,9 @@ from orchestrator.text.failures import reason_of
 Work = Callable[[Job, Chunk], Array]
 Result = tuple[Chunk, Array | NotRunError]
 """A chunk with its rows, or why it has none."""
-AHEAD = 2
+CHUNKS_PER_WORKER = 2
 """Chunks handed out per worker."""
-POLL = 0.2
+POLL_INTERVAL = 0.2
 """How often an interrupt is looked for [s]."""
 
 

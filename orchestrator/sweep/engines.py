@@ -31,7 +31,16 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch, run_recorded
-from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, Result, cores, rows_or_reason, safe_children
+from orchestrator.sweep.engine import (
+    CHUNKS_PER_WORKER,
+    POLL_INTERVAL,
+    ChunkTask,
+    Engine,
+    Result,
+    cores,
+    rows_or_reason,
+    safe_children,
+)
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.sweep.study.theirs import files_of
@@ -82,7 +91,7 @@ class LocalEngine:
             waiting: dict[Future[Array], Chunk] = {}
             until: float | None = None
             while True:
-                while len(waiting) < AHEAD * self.workers and not interrupt.requested:
+                while len(waiting) < CHUNKS_PER_WORKER * self.workers and not interrupt.requested:
                     chunk = next(chunks, None)
                     if chunk is None:
                         break
@@ -93,7 +102,7 @@ class LocalEngine:
                         del waiting[future]
                 if not waiting or (until and time.monotonic() > until and not self._task.threads):
                     return
-                for future in wait(waiting, timeout=POLL, return_when=FIRST_COMPLETED).done:
+                for future in wait(waiting, timeout=POLL_INTERVAL, return_when=FIRST_COMPLETED).done:
                     chunk = waiting.pop(future)
                     yield chunk, rows_or_reason(partial(_rows, future), len(chunk.seeds))
 

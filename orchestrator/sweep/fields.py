@@ -17,7 +17,7 @@ SCENARIO_FIELDS: dict[str, Variable] = {
     "step": Variable("step", float, Signal("s", "communication step", 1e-9, LONGEST_STEP), 0.01),
     "seed": Variable("seed", int, Signal("1", "random seed of the run", 0, 2**31 - 1), 1),
     **{
-        f"every.{name}": Variable(f"every.{name}", int, Signal("1", f"decimation of the {name}", 1, 1e6), 1)
+        f"decimation.{name}": Variable(f"decimation.{name}", int, Signal("1", f"decimation of the {name}", 1, 1e6), 1)
         for name in MODELS
     },
 }

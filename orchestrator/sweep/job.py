@@ -18,7 +18,7 @@ from orchestrator.sweep.fields import TRUE_OWNERS
 from orchestrator.sweep.rows import measures_for
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
-from orchestrator.text.quantities import NANOSECONDS
+from orchestrator.text.quantities import NS_PER_SECOND
 from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.truth import TRUE_KEYS, Truth, joined, truth_of
 
@@ -71,7 +71,7 @@ def make_job(study: Study) -> Job:
 def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     """Return the complete scenario of one run of ``chunk``, for the ordinary ``apa run``."""
     data = {**job.scenario, **{owner: dict(job.scenario[owner]) for owner in MODELS}}
-    data["every"] = dict(data["every"])
+    data["decimation"] = dict(data["decimation"])
     data["faults"] = [dict(fault) for fault in data["faults"]]
     data["seed"] = int(chunk.seeds[number])
     models = models_for(job.scenario["controller"])
@@ -89,8 +89,8 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
             data["faults"][place][name] = value
         elif owner in TRUE_OWNERS:
             data[owner] = {**data[owner], name: value}
-        elif name.startswith("every."):
-            data["every"][name.removeprefix("every.")] = int(value)
+        elif name.startswith("decimation."):
+            data["decimation"][name.removeprefix("decimation.")] = int(value)
         else:
             data[name] = int(value) if name == "seed" else value
     for owner, name, _ in job.seeded:
@@ -102,8 +102,10 @@ def _theirs(data: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """Return slave -> where a scenario, as plain data, has the parameters of its FMU, for those that are not ours."""
     if data["system"] is None:
         return {}
-    slaves = {name: {**item, "parameters": dict(item["parameters"])} for name, item in data["system"]["slaves"].items()}
-    data["system"] = {**data["system"], "slaves": slaves}
+    slaves = {
+        name: {**item, "parameters": dict(item["parameters"])} for name, item in data["system"]["components"].items()
+    }
+    data["system"] = {**data["system"], "components": slaves}
     return {name: data[name] if name in MODELS else item["parameters"] for name, item in slaves.items() if item["file"]}
 
 
@@ -146,7 +148,7 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     starts = dict(zip(MODELS, np.cumsum([0, *map(len, base)]).tolist(), strict=False))
     parameters = np.tile(np.array([float(item) for part in base for item in part]), (count, 1))
     seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.longest)
-    every = {owner: np.full(count, scenario.every.get(owner, 1), dtype=np.int64) for owner in MODELS}
+    every = {owner: np.full(count, scenario.decimation.get(owner, 1), dtype=np.int64) for owner in MODELS}
     controls = {item.name: place for place, item in enumerate(variables(scenario.models["controller"].params))}
     for name, values in _told_targets(job, list(chunk.values.T)):
         parameters[:, starts["controller"] + controls[name]] = values
@@ -161,14 +163,14 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
             steps = values
         elif name == "stop_time":
             stops = values
-        elif name.startswith("every."):
-            every[name.removeprefix("every.")] = values.astype(np.int64)
+        elif name.startswith("decimation."):
+            every[name.removeprefix("decimation.")] = values.astype(np.int64)
     for owner, _, place in job.seeded:
         parameters[:, starts[owner] + place] = seeds
     if not is_told:
         stops = stop_times(_driver_speeds(scenario, parameters))
-    step_ns = np.round(steps * NANOSECONDS).astype(np.int64)
-    stop_ns = np.round(stops * NANOSECONDS).astype(np.int64)
+    step_ns = np.round(steps * NS_PER_SECOND).astype(np.int64)
+    stop_ns = np.round(stops * NS_PER_SECOND).astype(np.int64)
     return parameters, np.column_stack([step_ns, stop_ns, *every.values()])
 
 
@@ -204,7 +206,7 @@ def job_from(data: dict[str, Any]) -> Job:
 def _places_by_name(scenario: dict[str, Any]) -> dict[str, dict[str, int]]:
     """Return model -> parameter -> its place, of the models that are ours: another version may have had others."""
     system = scenario.get("system")
-    theirs = {name for name, item in system["slaves"].items() if item["file"]} if system else set()
+    theirs = {name for name, item in system["components"].items() if item["file"]} if system else set()
     models = models_for(scenario["controller"])
     ours = {owner: model for owner, model in models.items() if owner not in theirs}
     return {owner: {item.name: at for at, item in enumerate(variables(model.params))} for owner, model in ours.items()}

@@ -20,7 +20,7 @@ from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
 
-NEEDED = ("outcome", "reason", "duration", "shifts", "max_speed", *(f"final.{name}" for name in COMPARED))
+NEEDED = ("outcome", "reason", "duration", "manoeuvres", "max_speed", *(f"final.{name}" for name in COMPARED))
 """Columns of a table with which a run is compared."""
 
 

@@ -28,7 +28,7 @@ FIRST_MEASURE = 2
 
 def last_words(scenario: Scenario) -> tuple[Measure, Measure]:
     """Return the measures that tell how far the controller was at the end, and why it gave up."""
-    return Measure("last", scenario.ending.signal), Measure("last", scenario.ending.reason)
+    return Measure("last", scenario.stop_condition.signal), Measure("last", scenario.stop_condition.reason)
 
 
 def measures_for(
@@ -42,9 +42,9 @@ def measures_for(
     for item in last_words(scenario):
         if item.signal not in known:
             hint = suggestion(item.signal, known)
-            raise BadInput(f"no signal of this name{hint}", file=scenario.file, key=f"ending: {item.signal}")
+            raise BadInput(f"no signal of this name{hint}", file=scenario.file, key=f"stop_condition: {item.signal}")
     found = [measure for measure in (*MEASURES, *last_words(scenario)) if measure.signal in known]
-    for limit in (*scenario.limits, *more):
+    for limit in (*scenario.requirements, *more):
         if limit.signal in known:
             found += measures_of(limit)
         elif limit.signal not in NUMBERS:
@@ -107,9 +107,9 @@ def recorded_limits(scenario: Scenario) -> list[int]:
     """Return the places of the limits of ``scenario`` that take the whole run."""
     return [
         place
-        for place, limit in enumerate(scenario.limits)
+        for place, limit in enumerate(scenario.requirements)
         if (limit.signal not in NUMBERS and measure_of(limit) is None)
-        or (limit.signal in OF_WHOLE_RUNS and (limit.where != "polygons" or scenario.polygons))
+        or (limit.signal in OF_WHOLE_RUNS and (limit.where != "obstacles" or scenario.obstacles))
         or (limit.signal in (PENETRATION, CLEARANCE_NUMBER) and _needs_poses(scenario))
     ]
 
@@ -119,7 +119,7 @@ CLEARANCE_NUMBER = "min_clearance"
 
 def _needs_poses(scenario: Scenario) -> bool:
     """Return whether contact is told by poses alone: with polygons, or a third-party vehicle."""
-    return bool(scenario.polygons) or "vehicle" in files_of(scenario)
+    return bool(scenario.obstacles) or "vehicle" in files_of(scenario)
 
 
 def why_not_compiled(scenario: Scenario) -> str:
@@ -127,7 +127,7 @@ def why_not_compiled(scenario: Scenario) -> str:
     if scenario.system is not None:
         return "the scenario has a system of its own"
     places = recorded_limits(scenario)
-    return f"the limit {scenario.limits[places[0]].id!r} needs the whole run" if places else ""
+    return f"the limit {scenario.requirements[places[0]].id!r} needs the whole run" if places else ""
 
 
 def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) -> Array:
@@ -135,7 +135,7 @@ def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) ->
     end = str(recording.info["end"]["reason"])
     code = {"stop_time": STOP_TIME, "standstill": STANDSTILL}.get(end, ABORTED)
     found = [measured(item, recording) for item in measures]
-    worst = [_worst(scenario.limits[place], recording, scenario) for place in recorded_limits(scenario)]
+    worst = [_worst(scenario.requirements[place], recording, scenario) for place in recorded_limits(scenario)]
     return np.array([code, float(recording.t_ns[-1]) if len(recording.t_ns) else 0.0, *found, *worst])
 
 

@@ -21,7 +21,7 @@ from orchestrator.sweep.columns import TableColumn
 from orchestrator.text.errors import BadInput
 
 ABOUT, CHECKSUM = b"apa", "apa.checksum"
-UNSUMMED = b"0" * 64
+EMPTY_CHECKSUM = b"0" * 64
 CARRIED = re.compile(rb"apa\.checksum.{1,4}?([0-9a-f]{64})", re.DOTALL)
 WRITTEN: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string()}
@@ -112,7 +112,7 @@ class Store:
             with pq.ParquetWriter(beside, self.schema, **WRITTEN) as writer:
                 for number in range(count):
                     writer.write_table(self._read(number))
-                writer.add_key_value_metadata({CHECKSUM: UNSUMMED.decode()})
+                writer.add_key_value_metadata({CHECKSUM: EMPTY_CHECKSUM.decode()})
             _put_sum(beside)
             if self._about_of_table() not in (b"", self._text.encode()):
                 forget_made_of(self.table)
@@ -163,7 +163,7 @@ def sum_of(data: bytes) -> tuple[bytes, bytes, int]:
     found = CARRIED.search(data, max(0, len(data) - 8 - int.from_bytes(data[-8:-4], "little")))
     if found is None:
         return b"", b"", -1
-    rest = hashlib.sha256(data[: found.start(1)] + UNSUMMED + data[found.end(1) :])
+    rest = hashlib.sha256(data[: found.start(1)] + EMPTY_CHECKSUM + data[found.end(1) :])
     return rest.hexdigest().encode(), found[1], found.start(1)
 
 

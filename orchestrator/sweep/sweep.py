@@ -96,7 +96,8 @@ def _say_what_is_hardly_meant(study: Study) -> None:
         if text:
             say(f"apa: warning: {text}")
     if len(study.design.seeds) > MANY_RUNS:
-        say(f"apa: {len(study.design.seeds):,} runs: about {len(study.design.seeds) / 1e6 * ROW:.1f} GB of table")
+        runs = len(study.design.seeds)
+        say(f"apa: {runs:,} runs: about {runs / 1e6 * ROW_KILOBYTES:.1f} GB of table")
 
 
 def _ends(values: Array) -> list[float]:
@@ -106,7 +107,7 @@ def _ends(values: Array) -> list[float]:
 
 
 MANY_RUNS = 1_000_000
-ROW = 0.4
+ROW_KILOBYTES = 0.4
 """Size of a row in parts and table [kB], about."""
 
 

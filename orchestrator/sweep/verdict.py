@@ -55,12 +55,12 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     recorded = dict(zip(recorded_limits(scenario), columns[len(measures) :], strict=True))
     results = numbers(rows[:, 1] / 1e9, found, truth)
     for place, values in recorded.items():
-        if scenario.limits[place].signal in (PENETRATION, CLEARANCE_NUMBER):
-            results[scenario.limits[place].signal] = values
+        if scenario.requirements[place].signal in (PENETRATION, CLEARANCE_NUMBER):
+            results[scenario.requirements[place].signal] = values
     has = truth.has() | things(scenario, results)
     shares = np.zeros(len(rows))
     asked: list[Asked] = []
-    for place, limit in enumerate(scenario.limits):
+    for place, limit in enumerate(scenario.requirements):
         if limit.required:
             values = recorded[place] if place in recorded else values_in(limit, results, found)
             is_asked = has[limit.where] if limit.where is not None else np.ones(len(rows), dtype=bool)
@@ -70,7 +70,7 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
             shares = np.maximum(shares, np.where(is_asked, share(limit.condition, values, bound), 0.0))
     mode, reason = (found[item] for item in last_words(scenario))
     broken = ["error" if end == ABORTED else "" for end in rows[:, 0].tolist()]
-    named = declared(scenario, scenario.ending.signal, scenario.ending.reason)
+    named = declared(scenario, scenario.stop_condition.signal, scenario.stop_condition.reason)
     judged = outcomes(scenario, Ends(broken, mode, reason, found[SPEED]), asked, *named)
     codes = np.array([OUTCOMES.index(outcome) for outcome, _ in judged], dtype=np.int8)
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})
@@ -81,7 +81,7 @@ def things(scenario: Scenario, results: Mapping[str, Array]) -> dict[str, Bools]
     nearest = results[CLEARANCE_NUMBER]
     there = things_of(scenario, {})
     scene = np.isfinite(nearest) | ("scene" in there)
-    return {"polygons": np.full(len(nearest), "polygons" in there), "scene": scene}
+    return {"obstacles": np.full(len(nearest), "obstacles" in there), "scene": scene}
 
 
 def values_in(limit: Requirement, results: Mapping[str, Array], found: Mapping[Measure, Array]) -> Array:

@@ -18,7 +18,7 @@ from orchestrator.system.listener import Listener
 from orchestrator.system.units import scale_of
 from orchestrator.text.errors import BadInput, suggestion
 
-JUDGED = {"vehicle": ("pose.x", "pose.y", "pose.heading", "speed"), "controller": ("phase", "shifts")}
+JUDGED = {"vehicle": ("pose.x", "pose.y", "pose.heading", "speed"), "controller": ("phase", "manoeuvres")}
 """Outputs that a verdict is made of."""
 
 
@@ -71,7 +71,7 @@ def _declare(text: SystemText, slaves: list[Slave], file: str) -> None:
     for slave in slaves:
         for ports in (slave.inputs, slave.outputs) if defined else ():
             ports.scales = {**defined, **ports.scales}
-        entry = text.slaves.get(slave.name)
+        entry = text.components.get(slave.name)
         if entry is not None and entry.units:
             declare_units(slave, entry.units, file or None)
 

@@ -12,7 +12,7 @@ from orchestrator.text.errors import BadInput, suggestion
 
 NEEDED = {
     "controller": {
-        "shifts": "limits on the number of manoeuvres are not evaluated",
+        "manoeuvres": "limits on the number of manoeuvres are not evaluated",
     },
     "vehicle": {
         "pose.x": "the final position is not evaluated",
@@ -26,7 +26,7 @@ NEEDED_INPUTS = {"vehicle": ("steering_wheel_request", "steering_active")}
 """Inputs without which a slave of this name cannot be driven at all."""
 NOTE = "note: "
 """Begins a line that is no warning."""
-SPARE = ("person.", "told.", "choice.")
+SPARE = ("manual.", "external_slot.", "driver_selection.")
 """Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
 MAX_NAMES = 12
 """A line that names more is not read."""
@@ -70,9 +70,9 @@ def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition
 
 def _done(ending: EndCondition) -> str:
     try:
-        return ending.text(ending.done[0])
+        return ending.text(ending.succeeded[0])
     except BadInput:
-        return str(ending.done[0])
+        return str(ending.succeeded[0])
 
 
 def _missing(name: str, slave: Slave | None, ending: EndCondition | None) -> list[str]:

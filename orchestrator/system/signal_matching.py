@@ -40,7 +40,7 @@ FIELD_TERMS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("brk", "braking"), ("brake",)),
     **dict.fromkeys(("frc",), ("force",)),
     **dict.fromkeys(("en", "enable", "enabled", "activate", "engaged", "on"), ("active",)),
-    **dict.fromkeys(("moves", "maneuvers", "manoeuvres", "strokes", "maneuver", "manoeuvre"), ("shifts",)),
+    **dict.fromkeys(("moves", "maneuvers", "shifts", "strokes", "maneuver", "manoeuvre"), ("manoeuvres",)),
     **dict.fromkeys(("state", "mode", "status", "stage"), ("phase",)),
     **dict.fromkeys(("hmi", "hint", "instruction"), ("prompt",)),
     **dict.fromkeys(("confirmation", "ok"), ("confirm",)),

@@ -11,7 +11,8 @@ from orchestrator.text.errors import BAD_INPUT, suggestion, suggestion_or_choice
 SYNONYMS = {
     "plot": "report", "figure": "report", "show": "report", "view": "report",
     "simulate": "run", "start": "run", "validate": "fmu check", "inspect": "fmu check",
-    "study": "sweep", "bakeoff": "sweep bakeoff", "falsify": "hunt", "evaluate": "check",
+    "limits": "requirements", "systems": "controllers", "hunt": "falsify",
+    "study": "sweep", "bakeoff": "sweep bakeoff", "evaluate": "check",
     "diff": "compare", "convert": "export", "init": "new", "create": "new", "repair": "recover",
 }  # fmt: skip
 """What other tools call a command -> the command here."""

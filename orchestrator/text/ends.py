@@ -17,7 +17,7 @@ from fmus.children import end_all
 from fmus.files import remove_all_folders
 from orchestrator.text.errors import INTERRUPTED
 
-GRACE = 1.5
+SHUTDOWN_TIMEOUT = 1.5
 """Time for an end in order [s]."""
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM") if hasattr(signal, name))
 
@@ -113,4 +113,4 @@ def _watch(pipe: Any) -> None:
         ends = sum(number in SIGNALS for number in data)
         if ends and (wait is not None or ends > 1):
             end_now()
-        wait = GRACE if ends else wait
+        wait = SHUTDOWN_TIMEOUT if ends else wait

@@ -3,10 +3,13 @@
 from collections import Counter
 from collections.abc import Callable, Iterable
 
+from orchestrator.text.renamed_names import VALUES, new_name
+
 PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes. What was not judged never ends with the first two."""
 
 
+MIGRATE = " (apa migrate rewrites files)"
 LINES: dict[str, Callable[[], dict[str, int]]] = {}
 """File that was read -> the lines of its keys."""
 
@@ -62,10 +65,15 @@ RESOURCES = (OSError, MemoryError)
 def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
     """Return ``; did you mean X?`` with at most three of ``known``, ``prefix`` before each; empty if none is like it.
 
+    A name of an earlier version is answered with ``; it is called X now``.
+
     Names with the same last part come first, then names that contain the word, then similar spellings.
     """
     import difflib
 
+    now = new_name(word, prefix)
+    if now:
+        return f"; it is called {now} now{'' if word.startswith('-') else MIGRATE}"
     names = list(known)
     key = word[:MOST_LETTERS].lower()
     last = key.rsplit(".", 1)[-1]
@@ -101,6 +109,12 @@ MAX_CHOICES = 8
 """Names that a message lists before it says how many more there are."""
 MOST_LETTERS = 100
 """A word longer than this is like no other."""
+
+
+def renamed_value(key: str, value: object) -> str:
+    """Return ``; it is called X now`` for a value of ``faults[1].kind`` or the like that was in use before."""
+    now = VALUES.get(key.rpartition(".")[2], {}).get(str(value), "")
+    return f"; it is called {now} now{MIGRATE}" if now else ""
 
 
 def shown(value: object) -> str:

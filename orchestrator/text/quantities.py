@@ -9,13 +9,13 @@ from pydantic import BeforeValidator, Field
 from modelkit.variables import Variable
 from orchestrator.text.errors import BadInput, shown, suggestion
 
-DEGREE = math.pi / 180.0
-NANOSECONDS = 1_000_000_000
+RAD_PER_DEGREE = math.pi / 180.0
+NS_PER_SECOND = 1_000_000_000
 """In a second."""
 FACTORS: dict[str, tuple[str, float]] = {
-    "deg": ("rad", DEGREE),
-    "deg/s": ("rad/s", DEGREE),
-    "deg/s2": ("rad/s2", DEGREE),
+    "deg": ("rad", RAD_PER_DEGREE),
+    "deg/s": ("rad/s", RAD_PER_DEGREE),
+    "deg/s2": ("rad/s2", RAD_PER_DEGREE),
     "km/h": ("m/s", 1.0 / 3.6),
     "mph": ("m/s", 0.44704),
     "cm": ("m", 0.01),
@@ -52,7 +52,7 @@ MOST_LETTERS = 60
 MOST_WHOLE = 1 << 31
 Whole = Annotated[int, Field(ge=-MOST_WHOLE, lt=MOST_WHOLE)]
 """A whole number as FMI has them."""
-LARGEST = 1e15
+MAX_MAGNITUDE = 1e15
 """No number that anybody means is larger, in SI."""
 
 
@@ -63,7 +63,7 @@ def number(value: object, unit: str, *, file: object = None, key: str | None = N
     larger than anything that is.
     """
     result = _in_si(value, unit, file, key)
-    if not any_value and not abs(result) <= LARGEST:
+    if not any_value and not abs(result) <= MAX_MAGNITUDE:
         raise BadInput(f"{shown(value)} is not a number that anything here can have", file=file, key=key)
     return result
 
@@ -72,7 +72,7 @@ def _in_si(value: object, unit: str, file: object, key: str | None) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise BadInput(f"{shown(value)} is not a number [{unit}]", file=file, key=key)
     if not isinstance(value, str):
-        return float(value) if isinstance(value, float) or abs(value) <= LARGEST else math.inf
+        return float(value) if isinstance(value, float) or abs(value) <= MAX_MAGNITUDE else math.inf
     match = _parts(value)
     if match is None:
         raise BadInput(f"{shown(value)} is not a number, expected for example {_example(unit)}", file=file, key=key)
@@ -138,15 +138,15 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
 
 def _seconds(value: object) -> float | None:
     seconds = None if value is None else number(value, "s")
-    if seconds is not None and not 0.0 <= seconds <= LONGEST:
-        raise BadInput(f"{shown(value)} is not a time from 0 to {LONGEST:g} s")
+    if seconds is not None and not 0.0 <= seconds <= MAX_TIME:
+        raise BadInput(f"{shown(value)} is not a time from 0 to {MAX_TIME:g} s")
     return seconds
 
 
 def _until(value: object) -> float | None:
     """Return a time [s]; one that never comes is ``inf``."""
     never = isinstance(value, int | float | str) and not isinstance(value, bool)
-    return math.inf if never and number(value, "s", any_value=True) > LONGEST else _seconds(value)
+    return math.inf if never and number(value, "s", any_value=True) > MAX_TIME else _seconds(value)
 
 
 def _within(most: float, unit: str) -> BeforeValidator:
@@ -161,7 +161,7 @@ def _within(most: float, unit: str) -> BeforeValidator:
     return BeforeValidator(read)
 
 
-LONGEST = 1e9
+MAX_TIME = 1e9
 """The latest time [s]."""
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 """A time or duration [s] in a pydantic model; ``200 ms`` will do."""

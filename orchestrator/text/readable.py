@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterable, Mapping
 
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 
-FEW = 3
+MAX_LISTED_NAMES = 3
 """Names of one group that are told one by one."""
 WORDS = ("name", "title", "description", "source")
 """Keys of a scenario that change nothing in a run."""
@@ -16,7 +16,7 @@ def readable(value: float, unit: str) -> str:
     if not math.isfinite(value):
         return str(value)
     if unit.startswith("rad"):
-        return f"{value / DEGREE:.2f} {unit.replace('rad', 'deg')}"
+        return f"{value / RAD_PER_DEGREE:.2f} {unit.replace('rad', 'deg')}"
     return f"{value:.3f} {unit}" if unit != "1" else f"{value:g}"
 
 
@@ -25,7 +25,10 @@ def shortly(names: Iterable[str]) -> str:
     groups: dict[str, list[str]] = {}
     for name in names:
         groups.setdefault(".".join(name.split(".")[:2]), []).append(name)
-    parts = [f"{len(found)} of {group}" if len(found) > FEW else ", ".join(found) for group, found in groups.items()]
+    parts = [
+        f"{len(found)} of {group}" if len(found) > MAX_LISTED_NAMES else ", ".join(found)
+        for group, found in groups.items()
+    ]
     return ", ".join(parts)
 
 
@@ -34,9 +37,9 @@ def precise(value: float, unit: str) -> str:
     return f"{value:.3g} {unit}" if unit != "1" else f"{value:.3g}"
 
 
-def shifts_text(shifts: int | None) -> str:
+def manoeuvres_text(manoeuvres: int | None) -> str:
     """Return a number of manoeuvres in words."""
-    return "shifts not counted" if shifts is None else f"{shifts} shift{'' if shifts == 1 else 's'}"
+    return "manoeuvres not counted" if manoeuvres is None else f"{manoeuvres} manoeuvre{'' if manoeuvres == 1 else 's'}"
 
 
 def changes_text(changed: Mapping[str, str]) -> str:

@@ -11,12 +11,12 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from orchestrator.text.errors import LINES, BadInput, shown, suggestion_or_choices
+from orchestrator.text.errors import LINES, BadInput, renamed_value, shown, suggestion, suggestion_or_choices
 
 MOST_BYTES = 500_000
 MOST_NODES = 50_000
 """Values in a file, each alias counted as all that it stands for."""
-DEEPEST = 40
+MAX_NESTING = 40
 MOST_DIGITS = 40
 TEXT = "tag:yaml.org,2002:str"
 NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
@@ -54,8 +54,8 @@ class _BoundedComposer(yaml.composer.Composer, yaml.constructor.SafeConstructor)
         if tag not in (None, "!", TEXT):
             raise _mistake(f"the tag {shown(tag)} has no meaning here", event)
         before, self._depth = self._count, self._depth + 1
-        if self._depth > DEEPEST:
-            raise _mistake(f"nested deeper than {DEEPEST}", event)
+        if self._depth > MAX_NESTING:
+            raise _mistake(f"nested deeper than {MAX_NESTING}", event)
         self._counted(1, event)
         node = super().compose_node(parent, index)
         self._depth -= 1
@@ -207,13 +207,13 @@ def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
     if first["type"] == "extra_forbidden":
         word = str(first["loc"][-1])
         names = known if len(first["loc"]) == 1 else []
-        hint = suggestion_or_choices(word, names) if names else " here"
+        hint = suggestion_or_choices(word, names) if names else suggestion(key, ()) or " here"
         return BadInput(f"unknown{hint}", file=file, key=key)
     if first["type"] == "missing":
         return BadInput("is missing", file=file, key=key)
     cause = first.get("ctx", {}).get("error")
     text = str(cause) if isinstance(cause, BadInput) else f"{shown(value)}: {first['msg'][0].lower()}{first['msg'][1:]}"
-    return BadInput(text, file=file, key=key)
+    return BadInput(text + renamed_value(key, value), file=file, key=key)
 
 
 def place_in(error: ValidationError) -> str:

@@ -6,9 +6,9 @@ import numpy as np
 
 from orchestrator.cosim.slave import Array
 
-HALF = 0.5
+JERK_HALF_WINDOW = 0.5
 """Jerk is taken over two stretches of this length [s]: the change of their mean accelerations."""
-STANDING = 0.01
+STANDSTILL_SPEED = 0.01
 """A car not faster than this [m/s] stands."""
 TURNED = math.radians(5.0)
 """Steering-wheel angle [rad] that is more than the wheel's play or the end of a turn."""
@@ -34,7 +34,7 @@ class PeakJerk:
             self._step = float(t[1] - t[0])
         if not self._step > 0.0:
             return
-        rows = max(1, round(HALF / self._step))
+        rows = max(1, round(JERK_HALF_WINDOW / self._step))
         known = np.concatenate((self._before, speed)) if len(self._before) else speed
         self._before = np.array(known[-2 * rows :])
         if len(known) <= 2 * rows:
@@ -48,7 +48,7 @@ class PeakJerk:
         """Return it [m/s3]."""
         if not self._is_known:
             return math.nan
-        return self._largest / (max(1, round(HALF / self._step)) * self._step) ** 2
+        return self._largest / (max(1, round(JERK_HALF_WINDOW / self._step)) * self._step) ** 2
 
 
 class DrySteering:
@@ -66,7 +66,7 @@ class DrySteering:
         if self._wheel is not None:
             speed, wheel = np.concatenate(([0.0], speed)), np.concatenate(([self._wheel], wheel))
         self._wheel = float(wheel[-1])
-        standing = np.abs(speed[1:]) <= STANDING
+        standing = np.abs(speed[1:]) <= STANDSTILL_SPEED
         turned = np.where(standing, np.abs(np.diff(wheel)), 0.0)
         begins = np.flatnonzero(standing & ~np.concatenate(([self._stands], standing[:-1])))
         self._turned += float(turned[: begins[0] if len(begins) else None].sum()) if self._stands else 0.0
@@ -89,7 +89,7 @@ def peak_jerk(t: Array, speed: Array) -> float:
     return found.value
 
 
-def standstill_steering(speed: Array, wheel: Array) -> float:
+def dry_steering_count(speed: Array, wheel: Array) -> float:
     """Return how many standstills there are in which the wheel is turned by more than 5 deg in all."""
     found = DrySteering()
     found.add(speed, wheel)

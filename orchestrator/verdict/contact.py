@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from modelkit.geometry import FAR
+from modelkit.geometry import NO_HIT
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import CarOutline, described, kerbs, things
-from orchestrator.verdict.polygons import TOUCH, polygon_clearances
+from orchestrator.verdict.polygons import TOUCH_DEPTH, polygon_clearances
 
 CLEARANCE, SPEED, VEHICLE = "vehicle.clearance", "vehicle.speed", "vehicle"
 POSE = ("vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading")
@@ -113,14 +113,14 @@ def clearance_parts(recording: Recording, scenario: Scenario) -> Iterator[tuple[
     is_taken = _is_output_taken(recording)
     for part, _, _ in recording.parts():
         scene = _to_scene(part, parameters, is_taken)
-        if not scenario.polygons:
+        if not scenario.obstacles:
             yield part, Clearances(scene, np.full(len(scene), np.inf))
             continue
         poses = _poses(part)
         if poses is None:
             yield part, Clearances(scene, np.full(len(scene), np.nan))
         else:
-            near = polygon_clearances(poses, scenario.polygons, CarOutline.of(parameters))
+            near = polygon_clearances(poses, scenario.obstacles, CarOutline.of(parameters))
             yield part, Clearances(scene, near)
 
 
@@ -144,9 +144,9 @@ def _to_scene(recording: Recording, parameters: Mapping[str, float], is_taken: b
         return own
     poses = _poses(recording)
     if poses is None:
-        return np.full(len(recording.t), np.nan) if own is None else np.where(own <= 0.0, -TOUCH, own)
+        return np.full(len(recording.t), np.nan) if own is None else np.where(own <= 0.0, -TOUCH_DEPTH, own)
     found = _at_poses(poses, recording.t, parameters)
-    return found if own is None or _is_ours(recording) else np.where(own <= 0.0, np.minimum(found, -TOUCH), found)
+    return found if own is None or _is_ours(recording) else np.where(own <= 0.0, np.minimum(found, -TOUCH_DEPTH), found)
 
 
 def _is_ours(recording: Recording) -> bool:
@@ -166,7 +166,7 @@ def _at_poses(poses: Array, t: Array, given: Mapping[str, float]) -> Array:
     parameters = {**_defaults(), **given}
     car, reach = CarOutline.of(parameters), parameters["scene.tyre_reach"]
     low = CarOutline(car.wheelbase + reach, reach, car.half_width, car.wheelbase)
-    found = np.where(np.isfinite(poses).all(axis=1), FAR, np.nan)
+    found = np.where(np.isfinite(poses).all(axis=1), NO_HIT, np.nan)
     for box in things(parameters):
         rows = np.flatnonzero((box.appear_at <= t) & (t < box.disappear_at))
         moved = np.maximum(0.0, np.minimum(t[rows], box.halts_at) - box.moves_at)

@@ -49,7 +49,7 @@ class CarOutline(NamedTuple):
 
 FRAME, LONGEST = 0.1, 60.0
 """Between two pictures of a thing that moves, and how long it is followed [s]."""
-ALWAYS = 1e6
+MIN_PERMANENT_TIME = 1e6
 """What goes later than this [s] stays."""
 
 
@@ -72,7 +72,7 @@ class Box(NamedTuple):
     def comes_or_goes(self) -> bool:
         """Whether it is there for a part of the run only, or moves."""
         moves = self.speed_x != 0.0 or self.speed_y != 0.0
-        return moves or self.appear_at > 0.0 or self.disappear_at < ALWAYS
+        return moves or self.appear_at > 0.0 or self.disappear_at < MIN_PERMANENT_TIME
 
     def outline(self) -> Array:
         """Return the closed outline in the world, (5, 2) [m]."""

@@ -19,7 +19,7 @@ from orchestrator.verdict.truth import Bools
 
 CHART = "controller.phase"
 NEVER = "the window never comes"
-CLOSE = 1e-9
+TIME_TOLERANCE = 1e-9
 """Instants are the same within this [s]."""
 
 
@@ -54,7 +54,7 @@ class Check(BaseModel):
     """Name of the state, or why there is no value."""
     limit_name: str = ""
     """Name of the state asked for."""
-    judged: bool = True
+    evaluated: bool = True
     """False: the run has nothing to judge by, as an FMU does not put it out; such a check is never passed."""
 
 
@@ -134,7 +134,7 @@ def _not_judged(item: Requirement) -> Check:
         condition=item.condition,
         note="not measured",
         limit_name=item.limit if isinstance(item.limit, str) else "",
-        judged=False,
+        evaluated=False,
     )
 
 
@@ -266,6 +266,6 @@ class _After:
         if self._window.lasting is None:
             self._starts = self._starts[:1]
         for start in self._starts:
-            rows |= (t >= start - CLOSE) & (t <= start + lasting + CLOSE)
-        self._starts = [start for start in self._starts if start + lasting + CLOSE >= t[-1]]
+            rows |= (t >= start - TIME_TOLERANCE) & (t <= start + lasting + TIME_TOLERANCE)
+        self._starts = [start for start in self._starts if start + lasting + TIME_TOLERANCE >= t[-1]]
         return rows

@@ -21,7 +21,7 @@ def required_text(item: Requirement) -> str:
 
 def sentence(check: Check) -> str:
     """Return value, limit, margin and moment of a check in one line."""
-    if not check.judged:
+    if not check.evaluated:
         return f"{check.signal}: not measured, not evaluated"
     if math.isnan(check.value) and check.note == NEVER:
         hint = "" if check.passed else "; with if_never: pass it would be met"

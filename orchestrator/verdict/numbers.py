@@ -14,7 +14,7 @@ from orchestrator.verdict.comfort import DrySteering, PeakJerk
 from orchestrator.verdict.contact import VEHICLE, contact_facts, has_scene
 from orchestrator.verdict.geometry import described
 from orchestrator.verdict.measures import Measure, measured
-from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
+from orchestrator.verdict.standing import in_frames, kerb_distances, outline_margin
 from orchestrator.verdict.truth import Truth, truth_of
 
 
@@ -33,8 +33,8 @@ SPEED = Measure("last", end_condition.SPEED)
 CLEARANCE = Measure("smallest", "vehicle.clearance")
 NUMBERS: dict[str, Number] = {
     "duration": Number("s", "from start to the end of the run"),
-    "shifts": Number(
-        "1", "number of manoeuvres; the first reverse motion counts as one", Measure("last", "controller.shifts")
+    "manoeuvres": Number(
+        "1", "number of manoeuvres; the first reverse motion counts as one", Measure("last", "controller.manoeuvres")
     ),
     "max_speed": Number("m/s", "largest absolute speed", Measure("largest", end_condition.SPEED), True),
     "final.x": Number("m", "x of the rear-axle midpoint at the end", POSE[0]),
@@ -47,10 +47,10 @@ NUMBERS: dict[str, Number] = {
         "rad", "steering-wheel angle at the end, left positive", Measure("last", "vehicle.steering_wheel_angle")
     ),
     "final.speed": Number("m/s", "speed at the end, reverse negative", SPEED),
-    "final.slot_margin": Number("m", "signed distance of the outline to the slot boundary, negative beyond it"),
+    "final.outline_margin": Number("m", "signed distance of the outline to the slot boundary, negative beyond it"),
     "final.kerb_nearest": Number("m", "distance to the slot's kerb of the nearest tyre beside it"),
     "final.kerb_farthest": Number("m", "distance to the slot's kerb of the farthest tyre beside it"),
-    "steering_effort": Number(
+    "steering_travel": Number(
         "rad",
         "steering travel: sum of the absolute changes of the steering-wheel angle",
         Measure("travel", "vehicle.steering_wheel_angle"),
@@ -63,17 +63,15 @@ NUMBERS: dict[str, Number] = {
     ),
     PENETRATION: Number("m", "largest penetration depth of the outline into an obstacle; 0: no contact"),
     "peak_jerk": Number("m/s3", "largest absolute jerk, averaged over a second"),
-    "standstill_steering": Number(
-        "1", "dry-steering events: standstills with more than 5 deg of steering-wheel travel"
-    ),
+    "dry_steering_count": Number("1", "dry-steering events: standstills with more than 5 deg of steering-wheel travel"),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
-STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")
+STANDING = (*ERRORS, "final.outline_margin", "final.kerb_nearest", "final.kerb_farthest")
 """Made from the last pose and from what is true; NaN where a scenario has no target, slot or kerb."""
 OF_WHOLE_RUNS = {
     "polygon_clearance": tuple(measure.signal for measure in POSE),
     "peak_jerk": (end_condition.SPEED,),
-    "standstill_steering": (end_condition.SPEED, "vehicle.steering_wheel_angle"),
+    "dry_steering_count": (end_condition.SPEED, "vehicle.steering_wheel_angle"),
 }
 """Numbers that take the whole run -> signals; tables of many runs do not have them."""
 MEASURES = tuple(item.measure for item in NUMBERS.values() if item.measure is not None)
@@ -94,7 +92,7 @@ class Facts(NamedTuple):
     numbers: dict[str, float]
     """By the names of ``NUMBERS``; NaN for what was not measured, or what the scenario does not have."""
     has: frozenset[str]
-    """What the scenario has: ``target``, ``slot``, ``kerb``, ``polygons``, ``scene``."""
+    """What the scenario has: ``target``, ``slot``, ``kerb``, ``obstacles``, ``scene``."""
 
 
 def facts_of(recording: Recording, scenario: Scenario) -> Facts:
@@ -113,8 +111,8 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
 
 
 def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
-    """Return which of ``polygons`` and ``scene`` (anything at all) a run has; ``vehicle``: its own parameters."""
-    polygons = {"polygons"} if scenario.polygons else set[str]()
+    """Return which of ``obstacles`` and ``scene`` (anything at all) a run has; ``vehicle``: its own parameters."""
+    polygons = {"obstacles"} if scenario.obstacles else set[str]()
     return polygons | ({"scene"} if polygons or has_scene(described(scenario, vehicle)) else set())
 
 
@@ -125,17 +123,17 @@ def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
     return {
         "duration": recording.duration,
         "min_clearance": near.scene,
-        "polygon_clearance": near.polygons if scenario.polygons else math.nan,
+        "polygon_clearance": near.polygons if scenario.obstacles else math.nan,
         PENETRATION: near.depth,
         "peak_jerk": jerk,
-        "standstill_steering": turns,
+        "dry_steering_count": turns,
     }
 
 
 def _comfort(recording: Recording) -> tuple[float, float]:
     """Return peak jerk [m/s3] and how often the wheel is turned at standstill; NaN where that is not known."""
     jerk, turns = PeakJerk(), DrySteering()
-    names = OF_WHOLE_RUNS["standstill_steering"]
+    names = OF_WHOLE_RUNS["dry_steering_count"]
     has_speed, has_wheel = (recording.count > 0 and name in recording.signals for name in names)
     for part, _, _ in recording.parts() if has_speed else ():
         speed = part.signals[names[0]]
@@ -167,5 +165,5 @@ def _standing(poses: Array, truth: Truth) -> tuple[Array, ...]:
     """Return the numbers ``STANDING`` of cars at ``poses`` (n, 3)."""
     with np.errstate(over="ignore", invalid="ignore"):
         errors = in_frames(poses, truth.targets).T
-        margin = slot_margin(poses, truth.slots, truth.cars)
+        margin = outline_margin(poses, truth.slots, truth.cars)
         return (*errors, margin, *kerb_distances(poses, truth.kerbs, truth.cars))

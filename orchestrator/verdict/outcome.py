@@ -59,17 +59,17 @@ class _Words:
     """What the values of a scenario's modes mean."""
 
     def __init__(self, scenario: Scenario, mode: Variable | None, reason: Variable | None) -> None:
-        ending = scenario.ending
+        ending = scenario.stop_condition
         self._success, self._missed = SUCCESS[scenario.task], MISSED[scenario.task]
-        self._is_run = scenario.task == "run"
+        self._is_run = scenario.task == "open_loop"
         self._still = ending.still
-        done = [] if self._is_run else ending.done
+        done = [] if self._is_run else ending.succeeded
         self._done, self._failed, self._over = (
-            ending.values(states, mode) for states in (done, ending.failed, ending.over)
+            ending.values(states, mode) for states in (done, ending.failed, ending.ended)
         )
         self._output = ending.signal.partition(".")[2]
         self._modes = states_of(ending.signal, mode)
-        self._word = "" if self._is_run else ending.text(ending.done[0], mode)
+        self._word = "" if self._is_run else ending.text(ending.succeeded[0], mode)
         self._reasons = states_of(ending.reason, reason)
 
     def outcome(

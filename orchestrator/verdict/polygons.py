@@ -13,10 +13,10 @@ from orchestrator.verdict.geometry import CarOutline
 Polygons = Sequence[Sequence[tuple[float, float]]]
 AT_ONCE = 400
 """Poses worked out together."""
-SPACING = 0.01
-"""Poses nearer to each other than this [m] and ``TURN`` [rad] are looked at once."""
-TURN = 0.002
-TOUCH = 1e-9
+POSE_SPACING = 0.01
+"""Poses nearer to each other than this [m] and ``HEADING_SPACING`` [rad] are looked at once."""
+HEADING_SPACING = 0.002
+TOUCH_DEPTH = 1e-9
 """Penetration depth [m] of what only touches: less than any other."""
 
 
@@ -35,7 +35,7 @@ def polygon_clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Arr
     kept = _apart(known)
     values = _in_parts(known[kept], polygons, car)
     spread = values[np.searchsorted(kept, np.arange(len(known)), side="right") - 1]
-    near = np.flatnonzero(spread < SPACING + TURN * (car.front + car.rear))
+    near = np.flatnonzero(spread < POSE_SPACING + HEADING_SPACING * (car.front + car.rear))
     spread[near] = _in_parts(known[near], polygons, car)
     found[finite] = spread
     return found
@@ -51,7 +51,7 @@ def _apart(poses: Array) -> Indices:
     kept = [0]
     for row in range(1, len(poses)):
         moved = np.abs(poses[row] - poses[kept[-1]])
-        if moved[0] + moved[1] > SPACING or moved[2] > TURN:
+        if moved[0] + moved[1] > POSE_SPACING or moved[2] > HEADING_SPACING:
             kept.append(row)
     return np.array(kept, dtype=np.intp)
 
@@ -66,7 +66,7 @@ def _clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
         gaps[_middle_inside(corners)] = 0.0
         touching = np.flatnonzero(gaps <= 0.0)
         if len(touching):
-            gaps[touching] = -np.maximum(TOUCH, _depths(corners[touching], _convex_parts(polygon), length, width))
+            gaps[touching] = -np.maximum(TOUCH_DEPTH, _depths(corners[touching], _convex_parts(polygon), length, width))
         nearest = np.minimum(nearest, gaps)
     return nearest
 

@@ -27,7 +27,7 @@ def in_frames(poses: Array, frames: Array) -> Array:
     return np.column_stack([c * dx + s * dy, c * dy - s * dx, wrapped])
 
 
-def slot_margin(poses: Array, slots: Array, cars: Array) -> Array:
+def outline_margin(poses: Array, slots: Array, cars: Array) -> Array:
     """Return the least distance [m] of the outlines to the edges of their slots, negative where they stand out.
 
     ``slots``: x, y, heading, length, width; ``cars``: front, rear, half width, wheelbase from the rear axle.

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import DONE, PENETRATION, Outcome, Scenario
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.verdict.contact import VEHICLE, contact_facts
 from orchestrator.verdict.frame import in_frame, pose_of
 from orchestrator.verdict.geometry import described
@@ -48,7 +48,7 @@ class Final(_Part):
     """Left positive [rad]."""
     speed: float
     """Reverse negative [m/s]."""
-    slot_margin: float
+    outline_margin: float
     """Least distance of the outline to the slot's edges, negative where it stands out [m]."""
     kerb_nearest: float
     """Distance to the slot's kerb of the nearest tyre beside it [m]."""
@@ -138,7 +138,7 @@ class Summary(_Part):
 
     scenario: str
     """Its name."""
-    changed: dict[str, str]
+    overrides: dict[str, str]
     """What ``--set`` changed of the scenario."""
     outcome: Outcome
     """How the run came out."""
@@ -146,7 +146,7 @@ class Summary(_Part):
     """Why."""
     duration: float
     """Simulated time [s]."""
-    shifts: int | None
+    manoeuvres: int | None
     """Manoeuvres; null if the controller does not count them."""
     max_speed: float
     """Largest absolute speed [m/s]."""
@@ -154,7 +154,7 @@ class Summary(_Part):
     """Largest absolute jerk, averaged over a second [m/s3]."""
     penetration: float
     """Greatest penetration depth of the outline in anything of the scene [m]; 0: no contact."""
-    standstill_steering: int | None
+    dry_steering_count: int | None
     """Standstills in which the steering wheel is turned by more than 5 deg; null if the wheel is not known."""
     final: Final
     """Where and how the car stands at the end."""
@@ -208,22 +208,22 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
     ``note``: what its log does not tell, see :func:`orchestrator.verdict.logged.logged`.
     """
     facts = facts_of(recording, scenario)
-    numbers, checks = facts.numbers, judge(scenario.limits, recording, facts, scenario.file)
+    numbers, checks = facts.numbers, judge(scenario.requirements, recording, facts, scenario.file)
     outcome, reason = _outcome(recording, scenario, checks)
     events = _events(recording)
     many = f"only the first {MOST_EVENTS} changes of phase are listed" if len(events) == MOST_EVENTS else ""
     said = (note, *_contact(recording, scenario, numbers), _told_otherwise(recording, scenario), many)
     return Summary(
         scenario=scenario.name,
-        changed=scenario.changed,
+        overrides=scenario.overrides,
         outcome=outcome,
         reason=reason,
         duration=numbers["duration"],
-        shifts=_count(numbers["shifts"]),
+        manoeuvres=_count(numbers["manoeuvres"]),
         max_speed=numbers["max_speed"],
         peak_jerk=numbers["peak_jerk"],
         penetration=numbers[PENETRATION],
-        standstill_steering=_count(numbers["standstill_steering"]),
+        dry_steering_count=_count(numbers["dry_steering_count"]),
         final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
         events=events,
         checks=checks,
@@ -277,14 +277,14 @@ def _told_otherwise(recording: Recording, scenario: Scenario) -> str:
     along, across, turn = in_frame(*told, scenario.target.pose)
     return (
         f"the controller is told another target, {along:+.3f} m along and {across:+.3f} m across the true one, "
-        f"turned by {turn / DEGREE:+.2f} deg; the run is judged by the true one"
+        f"turned by {turn / RAD_PER_DEGREE:+.2f} deg; the run is judged by the true one"
     )
 
 
 def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> tuple[Outcome, str]:
     end = str(recording.info.get("end", {}).get("reason", ""))
     broken = end if end == "interrupted" or end.startswith("error") else ""
-    signals = (scenario.ending.signal, scenario.ending.reason)
+    signals = (scenario.stop_condition.signal, scenario.stop_condition.reason)
     last = (np.array([measured(Measure("last", name), recording)]) for name in (*signals, SPEED))
     asked = [
         Asked(check.id, np.array([not check.passed]), np.array([math.isnan(check.value)]))
@@ -301,7 +301,7 @@ MOST_EVENTS = 10_000
 FAR_FROM_TARGET = 0.5
 """A car further than this [m] from its target: the headline says so."""
 ALLOWED_CONTACT = "in contact, which the scenario allows (contact_allowed)"
-VISIBLE = 5e-4
+VISIBLE_DISTANCE = 5e-4
 """An outline beyond a boundary by less than this [m] is at it."""
 
 
@@ -318,7 +318,7 @@ def standing_of(recording: Recording, scenario: Scenario, numbers: dict[str, flo
         said += [
             f"outline {100.0 * float(over[0]):.1f} cm beyond the slot's {end} boundary"
             for end, over in ends
-            if over[0] >= VISIBLE
+            if over[0] >= VISIBLE_DISTANCE
         ]
     off = math.hypot(numbers["final.longitudinal_error"], numbers["final.lateral_error"])
     return [*said, f"{off:.2f} m from the target"] if off > FAR_FROM_TARGET else said

@@ -116,7 +116,7 @@ def small_quotient(x: float, y: float, n: int, m: int, p: bool, q: bool) -> floa
     return n % 100 / (m % 7 + 1)
 
 
-def shifts(x: float, y: float, n: int, m: int, p: bool, q: bool) -> int:
+def manoeuvres(x: float, y: float, n: int, m: int, p: bool, q: bool) -> int:
     return ((n & 0xFFFF) << 13) ^ (m >> 3) | (n >> (m & 31))
 
 

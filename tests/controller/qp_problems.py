@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controller_fmu.zhang2022.qp import STAGES, Initial
+from controller_fmu.zhang2022.qp import MAX_STAGES, Initial
 from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 
 Problem = tuple[Initial, tuple[HorizonStage, ...], Weights]
@@ -18,7 +18,7 @@ def random_problem(rng: np.random.Generator) -> Problem:
     costs = (rng.uniform(1, 200), rng.uniform(0.1, 50), rng.uniform(0, 1), rng.uniform(0.1, 50), rng.uniform(10, 1e4))
     weights = Weights._make([*map(float, costs), float(corridor), float(lock), float(rate * time)])
     stages, angle = [], rng.uniform(-lock, lock)
-    for _ in range(STAGES):
+    for _ in range(MAX_STAGES):
         angle = float(np.clip(angle + rng.uniform(-0.1, 0.1), -lock, lock))
         gain = float(speed * time / (wheelbase * np.cos(angle) ** 2))
         stages.append(HorizonStage(float(speed * time), gain, 0.5 * float(speed * time) * gain, angle, 1.0))

@@ -6,7 +6,7 @@ import pytest
 
 from controller_fmu.adaptive.chart import TRANSITIONS, Guard, transition
 from controller_fmu.adaptive.phases import AdaptivePhase
-from controller_fmu.common.chart import ANY
+from controller_fmu.common.chart import ANY_STATE
 
 ENDS = {AdaptivePhase.PARKED, AdaptivePhase.FAILED, AdaptivePhase.TAKEOVER}
 BUSY = [phase for phase in AdaptivePhase if phase not in ENDS]
@@ -14,7 +14,7 @@ BUSY = [phase for phase in AdaptivePhase if phase not in ENDS]
 
 @pytest.mark.parametrize("phase", BUSY)
 def test_every_set_of_guards(phase: Any) -> None:
-    rows = [row for row in TRANSITIONS if row[0] in (phase, ANY)]
+    rows = [row for row in TRANSITIONS if row[0] in (phase, ANY_STATE)]
     for guards in range(1 << len(Guard)):
         expected = next((row[2] for row in rows if guards >> row[1] & 1), phase)
         assert transition(phase, guards) == expected
@@ -33,7 +33,7 @@ def test_takeover_wins_then_fault(phase: Any) -> None:
 
 
 def test_no_dead_state() -> None:
-    edges = {(row[0], row[2]) for row in TRANSITIONS if row[0] != ANY}
+    edges = {(row[0], row[2]) for row in TRANSITIONS if row[0] != ANY_STATE}
     reached: set[int] = set()
     new: set[int] = {AdaptivePhase.STANDBY}
     reached |= new

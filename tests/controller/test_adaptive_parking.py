@@ -34,19 +34,19 @@ def stops(run: Any) -> Any:
 def test_a_driver_who_slows_down_parks_in_one_go() -> None:
     run = parked({})
     assert len(stops(run)) == 1
-    assert run.controller[-1].shifts == 1
+    assert run.controller[-1].manoeuvres == 1
     assert max(abs(out.lateral_error) for out in run.controller) < 0.02
 
 
 def test_a_driver_who_does_not_is_stopped_on_the_first_arc() -> None:
-    run = parked({"driver.obeys_slow_down": False})
+    run = parked({"driver.complies_with_slow_down": False})
     assert len(stops(run)) == 2
-    assert run.controller[-1].shifts == 1
+    assert run.controller[-1].manoeuvres == 1
 
 
 def test_with_a_quick_wheel_nobody_is_stopped() -> None:
     run = parked(
-        {"driver.obeys_slow_down": False, "car.steering.rate_limit": QUICK_WHEEL},
+        {"driver.complies_with_slow_down": False, "car.steering.rate_limit": QUICK_WHEEL},
         {"car.steering.rate_limit": QUICK_WHEEL},
     )
     assert len(stops(run)) == 1
@@ -69,7 +69,7 @@ def test_where_no_path_leads_in_it_goes_ahead_first() -> None:
     assert ways[0] == AdaptivePhase.TO_Q4
     prompts = [out.prompt for out in run.controller]
     assert Prompt.FORWARD in prompts
-    assert run.controller[-1].shifts == 1, "the way ahead before the first reverse counts none"
+    assert run.controller[-1].manoeuvres == 1, "the way ahead before the first reverse counts none"
 
 
 def test_no_room_at_all_is_no_path() -> None:
@@ -78,7 +78,7 @@ def test_no_room_at_all_is_no_path() -> None:
 
 
 def test_a_driver_who_does_not_move_ends_it() -> None:
-    run = drive({**FAST, "driver.obeys_direction": False, "driver.profile[1].speed": 0.0}, OURS)
+    run = drive({**FAST, "driver.complies_with_direction": False, "driver.profile[1].speed": 0.0}, OURS)
     assert (run.phases[-1], run.controller[-1].reason) == (AdaptivePhase.FAILED, Reason.NOT_MOVING)
 
 

@@ -55,7 +55,7 @@ def seen(recording: Any, signal: str) -> Any:
 @pytest.mark.parametrize("name", ENDS)
 def test_it_ends_as_it_should(name: str, files: Any) -> None:
     scenario, recording, summary = driven(name, files)
-    assert summary.outcome == scenario.expect
+    assert summary.outcome == scenario.expected_outcome
     assert recording.signals["vehicle.clearance"].min() > ENDS[name]
     if name in REASONS:
         assert REASONS[name] in summary.reason
@@ -63,8 +63,8 @@ def test_it_ends_as_it_should(name: str, files: Any) -> None:
 
 def test_without_what_is_told_there_is_no_slot(files: Any, tmp_path: Path) -> None:
     untold = tmp_path / "untold.yaml"
-    faults = "faults: [{signal: controller.told.kind, kind: override, value: none}]"
-    untold.write_text(f"name: untold\nbase: apa-told\nstop_time: 25\n{faults}\n", encoding="utf-8")
+    faults = "faults: [{signal: controller.external_slot.kind, kind: override, value: none}]"
+    untold.write_text(f"name: untold\nextends: apa-told\nstop_time: 25\n{faults}\n", encoding="utf-8")
     _, recording, _ = driven(str(untold), files)
     assert not (seen(recording, "apa.mode") == Mode.PARKING_SPACE_APPEARS).any()
 
@@ -92,4 +92,4 @@ def test_on_it_goes_without_a_new_search_and_in_one_reverse(files: Any) -> None:
     _, recording, _ = driven("apa-resume", files)
     later = recording.t > 50.0
     assert not (seen(recording, "apa.mode")[later] == Mode.PARKING_SPACE_SEARCH).any()
-    assert seen(recording, "shifts")[-1] == 1
+    assert seen(recording, "manoeuvres")[-1] == 1

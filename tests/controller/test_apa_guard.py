@@ -23,7 +23,7 @@ from controller_fmu.apa.system import apa_sample, apa_start
 from controller_fmu.common.curve import advance
 from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
-from modelkit.geometry import FAR, Point, cone_line
+from modelkit.geometry import NO_HIT, Point, cone_line
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
 from vehicle_fmu.ultrasonic import heard_distances
@@ -168,7 +168,7 @@ def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax: Any, ay: Any, bx:
     a, b = Point(ax, ay), Point(bx, by)
     exact = cone_line(Point(0.1, -0.2), axis, SENSORS.half_angle, a, b)
     ours = echo_of(ear_of(0.1, -0.2, axis, SENSORS.half_angle), a, b)
-    if exact < FAR and abs(ax - bx) + abs(ay - by) > 1e-3:
+    if exact < NO_HIT and abs(ax - bx) + abs(ay - by) > 1e-3:
         assert abs(ours.distance - exact) < 1e-6
         assert abs(math.hypot(ours.x - 0.1, ours.y + 0.2) - exact) < 1e-6
 

@@ -49,7 +49,7 @@ def test_the_car_is_parked_within_the_house_limits(kind: str, length: float, sid
     assert abs(lateral) < 0.05
     assert abs(turned) < math.radians(1.0)
     assert end.nearest > 0.1
-    assert end.controller.shifts <= (8 if length == 5.7 else 3)
+    assert end.controller.manoeuvres <= (8 if length == 5.7 else 3)
     assert abs(end.vehicle.steering_wheel_angle) < math.radians(5.0)
 
 
@@ -86,7 +86,11 @@ def test_the_driver_drives_as_prompted(reaction: float) -> None:
 
 @pytest.mark.parametrize(
     "more",
-    [{"driver.takeover_time": 6.0}, {"driver.brake_time": 6.0}, {"driver.grab_time": 6.0, "driver.grab_angle": 9.0}],
+    [
+        {"driver.takeover_time": 6.0},
+        {"driver.brake_time": 6.0},
+        {"driver.steering_override_time": 6.0, "driver.steering_override_angle": 9.0},
+    ],
 )
 def test_the_driver_takes_over_at_any_time(more: dict[str, Any]) -> None:
     end = run(more)
@@ -108,7 +112,7 @@ def test_switching_off_is_taking_over() -> None:
     [
         ({}, {"apa.guard.duration": 8.0}, Reason.TIMEOUT),
         (
-            {"driver.profile[1].speed": 2.0, "driver.obeys_slow_down": False},
+            {"driver.profile[1].speed": 2.0, "driver.complies_with_slow_down": False},
             {"apa.drive.longitudinal": 1, "apa.guard.over_speed": 1.0},
             Reason.OVER_SPEED,
         ),
@@ -118,7 +122,7 @@ def test_switching_off_is_taking_over() -> None:
             Reason.SENSOR_LOSS,
         ),
         ({"car.steering.rate_limit": 0.02}, {}, Reason.STEERING_FAULT),
-        ({}, {"apa.plan.shifts": 1, "apa.search.slot.length": 5.7}, Reason.TOO_MANY_SHIFTS),
+        ({}, {"apa.plan.manoeuvres": 1, "apa.search.slot.length": 5.7}, Reason.TOO_MANY_SHIFTS),
     ],
 )
 def test_every_failure_has_its_reason(more: dict[str, Any], asked: dict[str, Any], reason: Reason) -> None:

@@ -7,7 +7,7 @@ from shapely.geometry import Polygon
 from shapely.geometry import box as rectangle
 
 from controller_fmu.apa.around.surroundings import shape_of
-from controller_fmu.apa.choice import Choice, ChosenSide, ChosenTask
+from controller_fmu.apa.choice import ChosenSide, ChosenTask, DriverSelection
 from controller_fmu.apa.out.moves import CLEAR, TURNED
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.out.standing_in import STANDS_OUT, UNSURE, slot_around
@@ -123,7 +123,9 @@ def heard_at(pose: Pose, **near: float) -> ControllerInput:
         readings[number] = near.get(name, 0.5)
     for number, name in ((8, "left"), (9, "left"), (10, "right"), (11, "right"), (3, "corner"), (7, "corner")):
         readings[number] = near.get(name, 5.0)
-    return ControllerInput(odometry=pose, ultrasonic=tuple(readings), choice=Choice(ChosenTask.PULL_OUT))
+    return ControllerInput(
+        odometry=pose, ultrasonic=tuple(readings), driver_selection=DriverSelection(ChosenTask.PULL_OUT)
+    )
 
 
 def test_the_slot_lies_along_the_kerb_that_both_sensors_hear() -> None:
@@ -169,7 +171,9 @@ def test_the_slot_around_a_parked_car_is_what_it_hears(wish: ChosenSide, side: S
     readings[5] = readings[6] = 0.4
     readings[kerb] = readings[kerb + 1] = 0.3
     inputs = ControllerInput(
-        odometry=Pose(3.0, 2.0, 0.5 * math.pi), ultrasonic=tuple(readings), choice=Choice(ChosenTask.PULL_OUT, wish)
+        odometry=Pose(3.0, 2.0, 0.5 * math.pi),
+        ultrasonic=tuple(readings),
+        driver_selection=DriverSelection(ChosenTask.PULL_OUT, wish),
     )
     slot = slot_around(inputs, CAR, PARAMS)
     assert (slot.kind, slot.side, slot.opposite) == (Kind.PARALLEL, side, UNSEEN)

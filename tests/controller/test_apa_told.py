@@ -12,7 +12,7 @@ from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.search import SearchState, number_chosen, without
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.told import ToldWatch, reason_to_refuse, slot_of_told, watch_told
-from controller_fmu.common.told import SlotKind, ToldSlot
+from controller_fmu.common.external_slot import ExternalSlot, SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
@@ -24,31 +24,31 @@ RIGHT, LEFT = 10, 8
 
 def told(
     kind: Any = SlotKind.PARALLEL, length: Any = 6.2, depth: Any = 2.0, turned: Any = 0.0, side: Any = -1.0
-) -> ToldSlot:
+) -> ExternalSlot:
     """Return a slot along the x axis from the origin, on the right (``side`` -1) or left of a car that drives along."""
     into = side * (0.5 * math.pi - turned)
     dx, dy = depth * math.cos(into), depth * math.sin(into)
-    return ToldSlot(kind, 0.0, 0.0, length, 0.0, length + dx, dy, dx, dy, into)
+    return ExternalSlot(kind, 0.0, 0.0, length, 0.0, length + dx, dy, dx, dy, into)
 
 
-def swapped(slot: ToldSlot) -> ToldSlot:
-    return ToldSlot(
+def swapped(slot: ExternalSlot) -> ExternalSlot:
+    return ExternalSlot(
         slot.kind, slot.bx, slot.by, slot.ax, slot.ay, slot.dx, slot.dy, slot.cx, slot.cy, heading=slot.heading
     )
 
 
-def heard(slot: ToldSlot, x: float, reading: float = 5.0, sensor: int = RIGHT) -> ControllerInput:
+def heard(slot: ExternalSlot, x: float, reading: float = 5.0, sensor: int = RIGHT) -> ControllerInput:
     """Return the inputs of a car beside the slot whose side sensor is at ``x`` [m] and hears ``reading`` [m]."""
     mount = PARAMS.car.ultrasonic.mounts[sensor]
     readings = tuple(reading if number == sensor else 5.0 for number in range(12))
-    return ControllerInput(odometry=Pose(x - mount.x, 1.8, 0.0), told=slot, ultrasonic=readings)
+    return ControllerInput(odometry=Pose(x - mount.x, 1.8, 0.0), external_slot=slot, ultrasonic=readings)
 
 
-def seen(slot: ToldSlot, search: SearchState | None = None) -> Slot:
+def seen(slot: ExternalSlot, search: SearchState | None = None) -> Slot:
     return slot_of_told(slot, search or SearchState(), heard(slot, 0.0), CAR, PARAMS)
 
 
-def passed(slot: ToldSlot, readings: dict[float, float]) -> ToldWatch:
+def passed(slot: ExternalSlot, readings: dict[float, float]) -> ToldWatch:
     """Return what becomes of a slot that is driven past, with readings [m] of the side sensor by its place [m]."""
     state = ToldWatch()
     for number in range(90):
@@ -94,7 +94,7 @@ def test_a_depth_that_is_not_told_is_the_one_heard_at_the_same_place() -> None:
         (told(SlotKind.TAIL_IN, 3.0, 4.5, turned=0.1), Reason.NONE),
     ],
 )
-def test_every_slot_that_cannot_be_has_its_reason(slot: ToldSlot, reason: Reason) -> None:
+def test_every_slot_that_cannot_be_has_its_reason(slot: ExternalSlot, reason: Reason) -> None:
     assert Reason(reason_to_refuse(slot, seen(slot), CAR, PARAMS)) == reason
 
 
@@ -104,7 +104,7 @@ def test_it_is_shown_once_it_is_passed_and_only_while_it_is_told() -> None:
     assert before.slot.kind == Kind.NONE
     after = watch_told(before, SearchState(), heard(slot, 6.8), True, CAR, PARAMS)
     assert after.slot.kind == Kind.PARALLEL
-    assert watch_told(after, SearchState(), heard(ToldSlot(), 6.8), True, CAR, PARAMS) == ToldWatch()
+    assert watch_told(after, SearchState(), heard(ExternalSlot(), 6.8), True, CAR, PARAMS) == ToldWatch()
     given = PARAMS._replace(apa=PARAMS.apa._replace(search=PARAMS.apa.search._replace(given=True)))
     assert watch_told(ToldWatch(), SearchState(), heard(slot, 0.0), True, CAR, given).slot.kind == Kind.PARALLEL
 

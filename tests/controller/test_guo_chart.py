@@ -4,8 +4,8 @@ import itertools
 
 import pytest
 
-from controller_fmu.common.chart import ANY
-from controller_fmu.guo2015.chart import KEEP, TRANSITIONS, Guard, transition
+from controller_fmu.common.chart import ANY_STATE
+from controller_fmu.guo2015.chart import SAME_LEG, TRANSITIONS, Guard, transition
 from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase
 from controller_fmu.guo2015.prompts import PROMPT_OF_PHASE
 
@@ -20,7 +20,7 @@ def _bits(guards: tuple[Guard, ...]) -> int:
 @pytest.mark.parametrize("phase", GuoPhase)
 def test_every_combination_of_guards(phase: GuoPhase) -> None:
     """All 2^20 sets fall into those of the guards that the state's rows read; others never matter."""
-    rows = [row for row in TRANSITIONS if row[0] in (phase, ANY)]
+    rows = [row for row in TRANSITIONS if row[0] in (phase, ANY_STATE)]
     read = [Guard(row[1]) for row in rows]
     for size in range(len(read) + 1):
         for held in itertools.combinations(read, size):
@@ -46,7 +46,7 @@ def test_ends_are_ends(phase: GuoPhase) -> None:
 
 def test_no_dead_state() -> None:
     """Every state can be reached from standby, and from every state an end can be reached other than by failing."""
-    edges = {(GuoPhase(s), GuoPhase(t)) for s, g, t, _ in TRANSITIONS if s != ANY}
+    edges = {(GuoPhase(s), GuoPhase(t)) for s, g, t, _ in TRANSITIONS if s != ANY_STATE}
     reached, new = {GuoPhase.STANDBY}, {GuoPhase.STANDBY}
     while new:
         new = {t for s, t in edges if s in new} - reached
@@ -67,7 +67,7 @@ def test_every_guard_is_used_and_every_row_can_fire() -> None:
 def test_legs_are_states_that_drive() -> None:
     driving = {phase for phase in GuoPhase if DIRECTION_OF_PHASE[phase] != 0}
     for _, _, target, leg in TRANSITIONS:
-        if leg != KEEP:
+        if leg != SAME_LEG:
             assert GuoPhase(leg) in driving | {GuoPhase.STRAIGHTEN}
             assert GuoPhase(target) in {GuoPhase.STOP, GuoPhase.PRE_STEER}
 

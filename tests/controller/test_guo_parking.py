@@ -22,7 +22,7 @@ CASE_4 = {
     "driver.profile[2].at": 4.3,
     "driver.profile[2].speed": 0.53,
     "driver.reaction_delay": 0.0,
-    "driver.obeys_slow_down": False,
+    "driver.complies_with_slow_down": False,
 }
 PROMPTS = {"guo2015.prompting.reaction": 0.0}
 initialize, step = CONTROLLER.initialize, CONTROLLER.stepper(None)
@@ -58,7 +58,7 @@ def test_case_4_goes_the_paper_s_way(case_4: Run) -> None:
     end = case_4.vehicle[-1]
     assert abs(end.pose.y - TARGET[1]) < 0.05
     assert abs(end.pose.heading) < math.radians(1.0)
-    assert case_4.controller[-1].shifts == 3
+    assert case_4.controller[-1].manoeuvres == 3
 
 
 @pytest.mark.parametrize(
@@ -97,11 +97,11 @@ def test_slow_down_prompt_comes_before_the_tangent_point(case_4: Run) -> None:
 @pytest.mark.parametrize(
     ("vehicle", "controller", "reason"),
     [
-        ({"driver.obeys_stop": False, "driver.obeys_direction": False}, {}, Reason.NOT_STOPPING),
+        ({"driver.complies_with_stop": False, "driver.complies_with_direction": False}, {}, Reason.NOT_STOPPING),
         ({"driver.profile[1].speed": 0.0, "driver.profile[2].speed": 0.0}, {}, Reason.NOT_MOVING),
         ({}, {"target.x": -2.0}, Reason.NO_PATH),
         ({}, {"target.x": 7.0}, Reason.NO_PATH),
-        ({}, {"limit.shifts": 1}, Reason.TOO_MANY_SHIFTS),
+        ({}, {"limit.manoeuvres": 1}, Reason.TOO_MANY_SHIFTS),
         ({}, {"limit.duration": 3.0}, Reason.TIMEOUT),
         ({"car.steering.rate_limit": 0.05}, {}, Reason.STEERING_FAULT),
         ({"driver.profile[2].speed": 1.5}, {"system": int(System.NTBPT)}, Reason.MISSED_TARGET),

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.common.chart import ANY
-from controller_fmu.guo2015.chart import KEEP, TRANSITIONS, Guard
+from controller_fmu.common.chart import ANY_STATE
+from controller_fmu.guo2015.chart import SAME_LEG, TRANSITIONS, Guard
 from controller_fmu.guo2015.guards import standing_guards, way_guards
 from controller_fmu.guo2015.legs import Tracking, point_of_leg, track
 from controller_fmu.guo2015.params import GuoParams
-from controller_fmu.guo2015.path import BEYOND, FIRST_ARC, SECOND_ARC, Reference, reference_at
+from controller_fmu.guo2015.path import BEYOND_PATH, FIRST_ARC, SECOND_ARC, Reference, reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath, plan
@@ -78,7 +78,7 @@ def test_equation_9(x: float, path: TwoArcPath) -> None:
     assert at.heading == pytest.approx(math.asin(sine), abs=1.5e-3)
     assert at.curvature == pytest.approx(-1.0 / 5.5 if first else 1.0 / 5.5, rel=1e-3)
     assert at.piece == (FIRST_ARC if first else SECOND_ARC)
-    assert reference_at(path, -0.1, FIRST_ARC).piece == BEYOND
+    assert reference_at(path, -0.1, FIRST_ARC).piece == BEYOND_PATH
 
 
 @pytest.mark.parametrize(
@@ -212,14 +212,14 @@ def test_a_right_pose_too_far_ahead_of_q3_is_driven_back_where_that_is_asked_for
 def test_the_chart_is_that_of_figures_9_and_11() -> None:
     P, G = GuoPhase, Guard
     assert TRANSITIONS == (
-        (ANY, G.TAKEOVER, P.TAKEOVER, KEEP),
-        (ANY, G.FAULT, P.FAILED, KEEP),
+        (ANY_STATE, G.TAKEOVER, P.TAKEOVER, SAME_LEG),
+        (ANY_STATE, G.FAULT, P.FAILED, SAME_LEG),
         (P.STANDBY, G.PLANNED, P.PRE_STEER, P.PATH_TRACKING),
-        (P.PRE_STEER, G.WHEEL_SET_FOR_PATH, P.PATH_TRACKING, KEEP),
-        (P.PRE_STEER, G.WHEEL_SET_FOR_Q2, P.TO_Q2, KEEP),
-        (P.PRE_STEER, G.WHEEL_SET_FOR_Q1, P.TO_Q1, KEEP),
-        (P.PRE_STEER, G.WHEEL_SET_FOR_Q4, P.TO_Q4, KEEP),
-        (P.PRE_STEER, G.WHEEL_SET_FOR_Q3, P.TO_Q3, KEEP),
+        (P.PRE_STEER, G.WHEEL_SET_FOR_PATH, P.PATH_TRACKING, SAME_LEG),
+        (P.PRE_STEER, G.WHEEL_SET_FOR_Q2, P.TO_Q2, SAME_LEG),
+        (P.PRE_STEER, G.WHEEL_SET_FOR_Q1, P.TO_Q1, SAME_LEG),
+        (P.PRE_STEER, G.WHEEL_SET_FOR_Q4, P.TO_Q4, SAME_LEG),
+        (P.PRE_STEER, G.WHEEL_SET_FOR_Q3, P.TO_Q3, SAME_LEG),
         (P.PATH_TRACKING, G.PATH_END, P.STOP, P.STRAIGHTEN),
         (P.PATH_TRACKING, G.OFF_PATH, P.STOP, P.TO_Q2),
         (P.TO_Q2, G.PAST_Q2, P.STOP, P.TO_Q1),
@@ -228,11 +228,11 @@ def test_the_chart_is_that_of_figures_9_and_11() -> None:
         (P.TO_Q4, G.POSE_RIGHT, P.STOP, P.STRAIGHTEN),
         (P.TO_Q4, G.PAST_Q4, P.STOP, P.TO_Q3),
         (P.TO_Q3, G.AT_Q3, P.STOP, P.STRAIGHTEN),
-        (P.STOP, G.STANDING_TO_DRIVE, P.PRE_STEER, KEEP),
+        (P.STOP, G.STANDING_TO_DRIVE, P.PRE_STEER, SAME_LEG),
         (P.STOP, G.STANDING_AT_END_WRONG, P.PRE_STEER, P.TO_Q4),
         (P.STOP, G.STANDING_AHEAD, P.PRE_STEER, P.TO_Q3),
-        (P.STOP, G.STANDING_AT_END, P.STRAIGHTEN, KEEP),
-        (P.STRAIGHTEN, G.WHEEL_STRAIGHT, P.PARKED, KEEP),
+        (P.STOP, G.STANDING_AT_END, P.STRAIGHTEN, SAME_LEG),
+        (P.STRAIGHTEN, G.WHEEL_STRAIGHT, P.PARKED, SAME_LEG),
     )
 
 

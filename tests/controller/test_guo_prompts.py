@@ -45,7 +45,7 @@ def test_the_car_stays_on_the_path(obeying: Run) -> None:
 
 @pytest.mark.parametrize("speed", [0.3, 1.5])
 def test_the_advice_never_rises_with_a_stop(speed: float) -> None:
-    run = drive(OBEYING | {"driver.profile[1].speed": speed, "driver.obeys_slow_down": False}, {})
+    run = drive(OBEYING | {"driver.profile[1].speed": speed, "driver.complies_with_slow_down": False}, {})
     for before, after in zip(run.controller, run.controller[1:], strict=False):
         if after.phase == GuoPhase.STOP:
             assert after.advised_speed <= before.advised_speed
@@ -53,7 +53,7 @@ def test_the_advice_never_rises_with_a_stop(speed: float) -> None:
 
 def test_point_tracking_is_slow() -> None:
     """Guo 2015, Fig. 9: stop and drive slowly forward."""
-    run = drive(OBEYING | {"driver.obeys_slow_down": False}, {})
+    run = drive(OBEYING | {"driver.complies_with_slow_down": False}, {})
     points = (GuoPhase.TO_Q1, GuoPhase.TO_Q2, GuoPhase.TO_Q3, GuoPhase.TO_Q4)
     legs = [outputs for outputs in run.controller if outputs.phase in points]
     assert {Prompt.SLOW_DOWN, Prompt.FORWARD, Prompt.REVERSE} == {Prompt(outputs.prompt) for outputs in legs}

@@ -90,9 +90,9 @@ def test_speeds_of_the_modes() -> None:
     gain = HsicGains()
     near, far = Errors(0.3, 0, 0, 0.3, -1), Errors(5.0, 0, 0, 5.0, -1)
     assert speed(int(SpeedMode.STAND), far, gain) == 0.0
-    assert speed(int(SpeedMode.FAST), far, gain) == gain.fast
-    assert gain.creep <= speed(int(SpeedMode.APPROACH), near, gain) < gain.fast
-    assert speed(int(SpeedMode.SLOW), far, gain) == speed(int(SpeedMode.TURN_ROUND), far, gain) == gain.slow
+    assert speed(int(SpeedMode.FAST), far, gain) == gain.max_speed
+    assert gain.min_speed <= speed(int(SpeedMode.APPROACH), near, gain) < gain.max_speed
+    assert speed(int(SpeedMode.SLOW), far, gain) == speed(int(SpeedMode.TURN_ROUND), far, gain) == gain.corrective_speed
 
 
 def test_parked_by_the_paper_s_limits() -> None:
@@ -104,7 +104,7 @@ def test_parked_by_the_paper_s_limits() -> None:
 
 def test_a_car_is_lost_three_times_as_far_from_an_axis_as_from_a_path() -> None:
     params = ControllerParams()
-    far = 3.0 * params.threshold.lost_lateral
+    far = 3.0 * params.threshold.abort_lateral_error
     for lateral, stage, reason in (
         (far - 0.01, HsicStage.COUNTER, Reason.NONE),
         (far + 0.01, HsicStage.COUNTER, Reason.LEFT_PATH),

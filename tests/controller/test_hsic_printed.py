@@ -55,18 +55,18 @@ def test_rules_of_the_twelve_states_as_the_paper_words_them() -> None:
         (LIMIT, "reached", 0.01),
         (LIMIT, "ready_heading", 1.0 * DEGREE),
         (LIMIT, "ready_lateral", 0.1),
-        (LIMIT, "retreat", 3.0),
+        (LIMIT, "retry_distance", 3.0),
         (LIMIT, "shuffle_share", 0.6),
-        (LIMIT, "wheel", 2.0 * DEGREE),
+        (LIMIT, "steering_angle_reached", 2.0 * DEGREE),
         (GAIN, "lateral", 2.5),
         (GAIN, "heading", 4.0),
         (GAIN, "integral", 0.1),
-        (GAIN, "steepest", 4.5 * DEGREE),
-        (GAIN, "strengthened", 2.0),
-        (GAIN, "fast", 0.8),
-        (GAIN, "slow", 0.35),
+        (GAIN, "max_approach_heading", 4.5 * DEGREE),
+        (GAIN, "gain_boost", 2.0),
+        (GAIN, "max_speed", 0.8),
+        (GAIN, "corrective_speed", 0.35),
         (GAIN, "approach", 1.0),
-        (GAIN, "creep", 0.12),
+        (GAIN, "min_speed", 0.12),
     ],
 )
 def test_stated_and_chosen_numbers(group: object, name: str, stated: float) -> None:
@@ -235,7 +235,7 @@ def test_a_car_three_times_too_far_off_is_lost_but_not_on_its_way_to_the_ready_p
     share: float, reason: int, side: float
 ) -> None:
     state = begun()
-    off = state.found._replace(lateral=side * share * 3.0 * HSIC.threshold.lost_lateral)
+    off = state.found._replace(lateral=side * share * 3.0 * HSIC.threshold.abort_lateral_error)
     pose = to_world(Pose(5.0, 2.0, 0.0), SlotFrame(HSIC.target))
     turning = state._replace(found=off, course=state.course._replace(stage=HsicStage.TANGENT))
     assert sampled(turning, odometry=pose).reason == reason

@@ -26,7 +26,7 @@ ASSIST = {
     "fast": (GUARD.over_speed_time, Reason.OVER_SPEED),
     "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
     "blocked": (GUARD.blocked, Reason.BLOCKED),
-    "waiting": (GUARD.patience, Reason.NOT_MOVING),
+    "waiting": (GUARD.driver_response_timeout, Reason.NOT_MOVING),
     "running": (GUARD.duration, Reason.TIMEOUT),
 }
 """Clock of the assist -> its limit [s], and the reason."""
@@ -34,7 +34,7 @@ OTHERS = {
     "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
     "wrong_way": (LIMIT.wrong_direction, Reason.WRONG_DIRECTION),
     "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
-    "waiting": (LIMIT.patience, Reason.NOT_MOVING),
+    "waiting": (LIMIT.driver_response_timeout, Reason.NOT_MOVING),
 }
 
 
@@ -54,7 +54,7 @@ def test_the_assist_fails_just_past_each_limit(clock: str) -> None:
 
 
 def test_a_wheel_that_is_off_is_what_the_assist_waits_for() -> None:
-    late = apa.Watch(waiting=around(GUARD.patience)[1], wheel=OFF)
+    late = apa.Watch(waiting=around(GUARD.driver_response_timeout)[1], wheel=OFF)
     assert apa.reason_to_fail(late, DRIVING, True, PARAMS) == Reason.STEERING_FAULT
     near = late._replace(wheel=OFF._replace(request=0.29))
     assert apa.reason_to_fail(near, DRIVING, True, PARAMS) == Reason.NOT_MOVING
@@ -78,8 +78,8 @@ def test_the_other_systems_end_in_time(begun: bool) -> None:
         for ns in around(LIMIT.duration)
     ]
     assert found == [Reason.NONE, Reason.TIMEOUT]
-    shifts = [monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, 0, n, PARAMS) for n in (8, 9)]
-    assert shifts == [Reason.NONE, Reason.TOO_MANY_SHIFTS if begun else Reason.NONE]
+    manoeuvres = [monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, 0, n, PARAMS) for n in (8, 9)]
+    assert manoeuvres == [Reason.NONE, Reason.TOO_MANY_SHIFTS if begun else Reason.NONE]
 
 
 def test_the_driver_takes_over_past_each_threshold() -> None:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from controller_fmu.preview.control import drive_force, steering_angle
-from controller_fmu.preview.params import ROAD, PreviewParams
+from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import Displacement, PreviewErrors, integrate_sight
 from controller_fmu.preview.rule_tables import FORCE, STEERING_PRINTED, STEERING_SYMMETRIC
 from controller_fmu.preview.safe_speed import safe_speed
@@ -103,7 +103,7 @@ def test_safe_speeds(kappa: float, printed: float) -> None:
 
 
 def test_curvatures_and_places_of_the_curves() -> None:
-    assert [piece.curvature for piece in ROAD if piece.length > 0.0] == [
+    assert [piece.curvature for piece in DEFAULT_ROAD if piece.length > 0.0] == [
         0.0,
         -0.01,
         0.0,
@@ -114,10 +114,10 @@ def test_curvatures_and_places_of_the_curves() -> None:
         0.05,
         0.0,
     ]
-    starts = [sum(piece.length for piece in ROAD[:number]) for number in range(9)]
+    starts = [sum(piece.length for piece in DEFAULT_ROAD[:number]) for number in range(9)]
     assert (starts[3], starts[4]) == pytest.approx((357.1, 514.2), abs=0.06)
-    assert [ROAD[number].length for number in (0, 2, 4, 6, 8)] == [100.0, 100.0, 102.0, 102.0, 100.0]
-    turned = [abs(ROAD[number].length * ROAD[number].curvature) / math.pi for number in (1, 3, 5, 7)]
+    assert [DEFAULT_ROAD[number].length for number in (0, 2, 4, 6, 8)] == [100.0, 100.0, 102.0, 102.0, 100.0]
+    turned = [abs(DEFAULT_ROAD[number].length * DEFAULT_ROAD[number].curvature) / math.pi for number in (1, 3, 5, 7)]
     assert turned == pytest.approx([0.5, 1.0, 1.0, 1.0])
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller_fmu.preview.params import ROAD, PreviewParams
+from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import Displacement, PreviewErrors, integrate_sight, look, motion
 from controller_fmu.preview.road import along, curvature_at, project, road_at, road_length
 from controller_fmu.preview.safe_speed import safe_speed
@@ -15,10 +15,10 @@ from modelkit.vocabulary import Pose
 
 
 def test_curve_two_lies_where_the_paper_prints_it() -> None:
-    assert curvature_at(ROAD, 357.0) == 0.0
-    assert curvature_at(ROAD, 357.1) == 0.02
-    assert curvature_at(ROAD, 514.1) == 0.02
-    assert curvature_at(ROAD, 514.2) == 0.0
+    assert curvature_at(DEFAULT_ROAD, 357.0) == 0.0
+    assert curvature_at(DEFAULT_ROAD, 357.1) == 0.02
+    assert curvature_at(DEFAULT_ROAD, 514.1) == 0.02
+    assert curvature_at(DEFAULT_ROAD, 514.2) == 0.0
 
 
 def test_a_half_circle_turns_back() -> None:
@@ -29,25 +29,25 @@ def test_a_half_circle_turns_back() -> None:
 
 @given(st.floats(-20.0, 980.0), st.floats(-3.0, 3.0))
 def test_projection_finds_the_foot(s: Any, left: Any) -> None:
-    pose = road_at(ROAD, s).pose
+    pose = road_at(DEFAULT_ROAD, s).pose
     x, y = pose.x - left * math.sin(pose.heading), pose.y + left * math.cos(pose.heading)
-    assert project(ROAD, s + 0.5, x, y) == pytest.approx(s, abs=1e-3)
+    assert project(DEFAULT_ROAD, s + 0.5, x, y) == pytest.approx(s, abs=1e-3)
 
 
 @given(st.floats(1.0, 900.0))
 def test_curvature_is_the_heading_rate(s: Any) -> None:
-    if curvature_at(ROAD, s - 1e-3) == curvature_at(ROAD, s + 1e-3):
+    if curvature_at(DEFAULT_ROAD, s - 1e-3) == curvature_at(DEFAULT_ROAD, s + 1e-3):
         turned = math.remainder(
-            road_at(ROAD, s + 1e-3).pose.heading - road_at(ROAD, s - 1e-3).pose.heading, 2 * math.pi
+            road_at(DEFAULT_ROAD, s + 1e-3).pose.heading - road_at(DEFAULT_ROAD, s - 1e-3).pose.heading, 2 * math.pi
         )
-        assert turned / 2e-3 == pytest.approx(curvature_at(ROAD, s), abs=1e-9)
+        assert turned / 2e-3 == pytest.approx(curvature_at(DEFAULT_ROAD, s), abs=1e-9)
 
 
 def test_road_goes_straight_on_past_its_end() -> None:
-    end = road_length(ROAD)
-    first, second = road_at(ROAD, end).pose, road_at(ROAD, end + 7.0).pose
+    end = road_length(DEFAULT_ROAD)
+    first, second = road_at(DEFAULT_ROAD, end).pose, road_at(DEFAULT_ROAD, end + 7.0).pose
     assert math.dist((first.x, first.y), (second.x, second.y)) == pytest.approx(7.0)
-    assert curvature_at(ROAD, end + 1.0) == 0.0
+    assert curvature_at(DEFAULT_ROAD, end + 1.0) == 0.0
 
 
 @pytest.mark.parametrize(("kappa", "printed", "within"), [(0.01, 7.6, 0.05), (-0.02, 5.4, 0.05), (0.04, 3.8, 0.05)])

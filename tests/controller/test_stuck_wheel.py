@@ -5,7 +5,7 @@ import math
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.grid.stuck_wheel import BASES, HEADS, NEVER, StuckDrive, drive, line_of, scenario_of
+from orchestrator.grid.stuck_wheel import BASES, HEADS, NEVER_TIME, StuckDrive, drive, line_of, scenario_of
 
 compiled = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 
@@ -37,7 +37,7 @@ def test_a_real_actuator_is_no_fault(system: str) -> None:
 def test_drives_follow_from_their_number() -> None:
     assert scenario_of("adaptive", 3, True).vehicle == scenario_of("adaptive", 3, True).vehicle
     assert scenario_of("adaptive", 3, True).vehicle != scenario_of("adaptive", 4, True).vehicle
-    assert scenario_of("apa", 4, False).vehicle["steering.stuck_time"] == NEVER
+    assert scenario_of("apa", 4, False).vehicle["steering.fault_time"] == NEVER_TIME
     assert "steering.lag" in scenario_of("apa", 5, True).vehicle
     assert "steering.lag" not in scenario_of("apa", 4, True).vehicle
 
@@ -47,7 +47,7 @@ def test_the_table_counts_what_was_found_and_what_was_not() -> None:
         return StuckDrive("apa", True, stuck, seen, found, False, took)
 
     stuck = [one(2.0, 2.3, 2.3), one(2.0, 2.5, 2.5), one(2.0, math.nan, 9.0), one(math.nan, math.nan, 9.0)]
-    healthy = [one(math.nan, math.nan, 9.0, NEVER), one(math.nan, 4.0, 4.0, NEVER)]
+    healthy = [one(math.nan, math.nan, 9.0, NEVER_TIME), one(math.nan, 4.0, 4.0, NEVER_TIME)]
     line = dict(zip(HEADS, line_of("apa", stuck, healthy), strict=True))
     assert line == {
         **{"": "apa", "drives": "4", "asked of": "3", "found": "2", "within 0.3 s": "1", "median": "0.50 s"},

@@ -43,7 +43,7 @@ def test_off_the_path_the_car_is_steered_back(side: float) -> None:
 
 def test_fall_back_keeps_the_last_rate_within_its_limit() -> None:
     reference = nearest(PATH, Pose(3.0, 0.5, 0.3))
-    capped = steer(FrontWheels(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(cap=1))
+    capped = steer(FrontWheels(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(max_iterations=1))
     assert (capped.status, capped.rate) == (Status.ITERATION_CAP, 0.2)
     bad = steer(FrontWheels(0.1, 0.9, 0, 0), PATH, reference._replace(lateral_error=math.nan), -1.0, CAR, P)
     assert bad.status in (Status.FAILED, Status.ITERATION_CAP)

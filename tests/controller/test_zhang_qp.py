@@ -8,7 +8,7 @@ import osqp
 import pytest
 import scipy.sparse
 
-from controller_fmu.zhang2022.qp import STAGES, Initial, Status, solve
+from controller_fmu.zhang2022.qp import MAX_STAGES, Initial, Status, solve
 from tests.controller.qp_problems import dense, random_problem
 
 PROBLEMS = 2000
@@ -28,7 +28,7 @@ def test_thousands_of_random_problems_against_daqp() -> None:
         h, f, g, limit = dense(*problem)
         theirs, _, flag, _ = daqp.solve(h, f, g, limit, np.full_like(limit, -1e30))
         assert flag == 1
-        worst = max(worst, np.abs(steering(ours) - theirs[:STAGES]).max())
+        worst = max(worst, np.abs(steering(ours) - theirs[:MAX_STAGES]).max())
     assert worst < 1e-6
 
 
@@ -46,7 +46,7 @@ def test_hundreds_of_random_problems_against_osqp() -> None:
         theirs = solver.solve(raise_error=False)
         if theirs.info.status == "solved":
             compared += 1
-            worst = max(worst, np.abs(steering(solve(*problem, 1e-12, 60)) - theirs.x[:STAGES]).max())
+            worst = max(worst, np.abs(steering(solve(*problem, 1e-12, 60)) - theirs.x[:MAX_STAGES]).max())
     assert compared > 290
     assert worst < 1e-6
 

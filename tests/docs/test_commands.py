@@ -36,7 +36,7 @@ NOT_RUN = {
     "apa build --fmus native --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmus native --cc gcc": "would replace the FMUs that all runs here use",
-    "apa hunt": "minutes; tests/hunt has small ones",
+    "apa falsify": "minutes; tests/falsification has small ones",
     "apa export container guo2015-case4 --set": "compiles for half a minute what the line above it does",
     "apa build --system": "compiles; tests/fmi/test_system_fmus.py",
     "apa recover runs/guo2015-case4/run.mcap.part": "needs a killed run; tests/orchestrator/test_recover.py has some",
@@ -65,7 +65,7 @@ FILES = {
     "acceptance.yaml": PARKED,
     "requirements.yaml": PARKED,
     "rules.yaml": PARKED,
-    "my-scenario.yaml": "base: guo2015-case3",
+    "my-scenario.yaml": "extends: guo2015-case3",
 }
 NAMES = {"- id": "requirements.yaml", '"vehicle': "tolerances.yaml"}
 """How a block of YAML begins that the page gives no name -> how its commands call it."""

@@ -174,7 +174,7 @@ def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
         rows = generate.key_rows(model)
         assert [row[0] for row in rows if not row[3]] == [], model
     keys = {row[0]: row for row in generate.key_rows(Scenario)}
-    assert {"`target`", "`scene`", "`task`", "`ending`"} <= keys.keys()
+    assert {"`target`", "`scene`", "`task`", "`stop_condition`"} <= keys.keys()
     assert not {"`file`", "`changed`", "`left_out`"} & keys.keys()
     assert keys["`step`"][2] == "`0.01`"
 

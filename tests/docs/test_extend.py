@@ -93,7 +93,7 @@ def test_the_number_of_another_systems_phase_is_bad_input_in_one_line(copy: Path
     recipe = next(item for item in recipes() if item.title == "Add a controller")
     for language, file, text in recipe.edits:
         edit(copy, language, copy / file, text.replace("BACK = 12", "BACK = 4"))
-    code, output = run(copy, ["list", "systems"])
+    code, output = run(copy, ["list", "controllers"])
     assert code == 2, output
     assert CLASH in output
     assert "internal error" not in output

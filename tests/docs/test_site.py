@@ -59,7 +59,7 @@ def opened(browser: Any, path: Any) -> Any:
 def test_the_search_finds_parameters_by_their_names_from_a_folder(site: Any, browser: Any) -> None:
     page, asked, said = opened(browser, site / "guo2015.html")
     page.keyboard.press("f")
-    for name in ("rate_limit", "reaction_delay", "obeys_slow_down", "k4"):
+    for name in ("rate_limit", "reaction_delay", "complies_with_slow_down", "k4"):
         page.locator("input.md-search__input").fill("")
         page.locator("input.md-search__input").press_sequentially(name, delay=20)
         for _ in range(LIMIT // 100):

@@ -104,7 +104,7 @@ def test_a_run_is_judged_by_shipped_sets_and_files(case4: Any, tmp_path: Path) -
     own.write_text("- {id: slow, signal: vehicle.speed, max_abs: 1 m/s, source: me}\n", encoding="utf-8")
     fast = {"id": "fast", "signal": "vehicle.speed", "max_abs": "2 m/s"}
     checks = {check.id: check for check in apa.judge(case4, "gbt41630", own, fast)}
-    assert checks["shifts"].passed
+    assert checks["manoeuvres"].passed
     assert checks["fast"].passed
     assert not checks["slow"].passed
     assert checks["slow"].value == pytest.approx(-1.5)

@@ -27,11 +27,11 @@ COMMANDS = {
         "--set",
         "stop_time=1",
         "--set",
-        "expect=not_parked",
+        "expected_outcome=not_parked",
         "--json",
     ],
-    "sweep": ["sweep", "few.yaml", "--fmus", "native", "--no-page", "--workers", "1", "--json"],
-    "hunt": ["hunt", "small.yaml", "--fmus", "native", "--budget", "50", "--workers", "1", "--json"],
+    "sweep": ["sweep", "few.yaml", "--fmus", "native", "--no-page", "--jobs", "1", "--json"],
+    "falsify": ["falsify", "small.yaml", "--fmus", "native", "--budget", "50", "--jobs", "1", "--json"],
 }
 MOST = 2000
 """Calls of one kind that a command may make: more is a mistake of this test."""

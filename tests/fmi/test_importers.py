@@ -27,7 +27,7 @@ PORTS = [
     *(f"apa.offered[{n}].{name}" for n in (1, 2, 3) for name in ("kind", "side", "a.x", "a.y", "a.heading", "length")),
     *("apa.shown", "apa.family"),
 ]
-FROM_OUTSIDE = ("told.", "choice.")
+FROM_OUTSIDE = ("external_slot.", "driver_selection.")
 """Inputs that a driver's display, a camera, a map or a test bench feeds, not the vehicle."""
 everywhere = pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
 

@@ -127,7 +127,9 @@ def test_what_it_shows_beside_what_all_have_is_read(system: Any) -> None:
 def test_it_has_the_inputs_that_the_system_reads(system: Any) -> None:
     _, heard, _ = read_and_told(system)
     inputs = shown(SYSTEM_MODELS[system], MODEL.inputs)
-    told = {name for name in inputs if name.startswith("told.") and "told.kind" in heard}  # the kind says that it is
+    told = {
+        name for name in inputs if name.startswith("external_slot.") and "external_slot.kind" in heard
+    }  # the kind says that it is
     assert inputs == heard | told
 
 

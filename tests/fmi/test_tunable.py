@@ -176,7 +176,7 @@ def drawn(draw: Any, item: Any) -> Any:
         ("zhang2022-double-track", "controller", "zhang2022.mpc.lateral", 1e5),
         ("zhang2022-double-track", "controller", "zhang2022.pid.proportional", 100.0),
         ("zhang2022-double-track", "controller", "zhang2022.speed", 0.3),
-        ("hsic", "controller", "hsic.gain.fast", 0.2),
+        ("hsic", "controller", "hsic.gain.max_speed", 0.2),
         ("preview", "controller", "preview.set_speed", 3.0),
         ("preview", "controller", "preview.lateral_gain", 10.0),
         ("apa-parallel", "controller", "apa.drive.k1", 20.0),

@@ -44,7 +44,7 @@ def main() -> int:
         SLOWEST,
     )
     if asked.kind in ("logs", "parquet"):
-        ask(["sweep", "guo2015-trial", "--every", "100", "--no-page", "--out", str(folder / "study")], SLOWEST)
+        ask(["sweep", "guo2015-trial", "--stride", "100", "--no-page", "--out", str(folder / "study")], SLOWEST)
         (folder / "study" / "guo2015-trial.parquet").rename(log.with_name("table.parquet"))
     if asked.kind in ("inputs", "logs", "tables", "ssp", "fmus", "parquet"):
         limit_memory()

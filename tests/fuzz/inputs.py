@@ -104,7 +104,7 @@ SETTINGS = (
     "vehicle.start",
     "vehicle.car.wheelbase",
     "car.width",
-    "car.base",
+    "car.extends",
     "car.steering",
     "vehicle.chassis.mass",
     "controller",
@@ -115,19 +115,19 @@ SETTINGS = (
     "slot.length",
     "step",
     "stop_time",
-    "every.vehicle",
-    "every.controller",
-    "every",
+    "decimation.vehicle",
+    "decimation.controller",
+    "decimation",
     "seed",
     "name",
     "title",
     "faults",
-    "limits",
-    "ending",
-    "expect",
+    "requirements",
+    "stop_condition",
+    "expected_outcome",
     "task",
     "car",
-    "base",
+    "extends",
     "scene",
     "scene.boxes",
     "vehicle.driver.profile",
@@ -135,8 +135,8 @@ SETTINGS = (
     "controller.guo2015.k4",
     "vehicle.scene.boxes[1].x",
     "file",
-    "changed",
-    "left_out",
+    "overrides",
+    "unsupported_parameters",
     "scene.boxes[1].x",
     "",
     ".",
@@ -147,7 +147,7 @@ SETTINGS = (
     "ultrasonic.seed",
 )
 SCENARIO = """name: odd
-base: guo2015-case4
+extends: guo2015-case4
 title: odd
 stop_time: 0.3
 step: 0.01
@@ -162,11 +162,11 @@ target: [0.0, 0.0, 0.0]
 faults:
   - {signal: vehicle.odometry, kind: delay, start: 0.1, stop: 1, delay: 0.1}
   - {signal: vehicle.odometry.x, kind: noise, sigma: 0.1}
-  - {signal: vehicle.odometry.heading, kind: drop, probability: 0.5}
+  - {signal: vehicle.odometry.heading, kind: dropout, probability: 0.5}
 limits:
   - house
   - {id: a, signal: vehicle.speed, max: 3, window: {from: 0, to: 1, phase: PARKED}, source: me}
-ending: {still: 0.001, standstill: 0.5, done: [PARKED]}
+stop_condition: {still: 0.001, standstill: 0.5, succeeded: [PARKED]}
 """
 STUDY = """name: odd
 title: odd
@@ -265,7 +265,7 @@ def attacks(folder: Path, log: Path, draw: random.Random) -> Iterator[list[str]]
         elif kind == 6:
             yield ["test", str(file), *sets[:2], "--fmus", "none", *out]
         elif kind == 7:
-            yield ["sweep", str(file), *sets[: draw.choice((0, 2))], "--restart", "--no-page", "--workers", "1", *out]
+            yield ["sweep", str(file), *sets[: draw.choice((0, 2))], "--restart", "--no-page", "--jobs", "1", *out]
         elif kind == 8:
             yield ["check", str(log), str(file)]
         elif kind == 10:

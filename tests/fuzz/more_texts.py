@@ -9,7 +9,7 @@ inputs:
   steering_active: true
   steering_wheel_request: {step: {at: 0.2 s, to: 180 deg, from: 0}}
   prompt: {table: [[0, FORWARD], [0.5, STOP]]}
-  person.brake: {csv: {file: odd.csv, column: brake}}
+  manual.brake: {csv: {file: odd.csv, column: brake}}
   speed_request: {ramp: {begin: 0.1, end: 0.5, from: 0, to: 1 m/s}}
   speed_control_active: {pulse: {at: 0.1, width: 0.2, period: 0.5, to: true}}
   advised_speed: {sine: {amplitude: 0.5 m/s, frequency: 2 Hz, offset: 1, begin: 0}}

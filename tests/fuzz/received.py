@@ -148,9 +148,9 @@ runs:
 
 def fuzz_journals(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[str], str]]:
     """Go on with hunts whose journal was damaged, or says something else."""
-    study, out, whole = folder / "short.yaml", folder / "hunt", folder / "whole"
+    study, out, whole = folder / "short.yaml", folder / "falsify", folder / "whole"
     study.write_text(STUDY)
-    words = ["hunt", str(study), "--budget", "50", "--workers", "1", "--out"]
+    words = ["falsify", str(study), "--budget", "50", "--jobs", "1", "--out"]
     made = ask([*words, str(whole)], 600.0)
     assert (whole / "journal").is_dir(), made
     while True:

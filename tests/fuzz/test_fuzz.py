@@ -42,7 +42,7 @@ def test_a_file_that_broke_it_once_is_refused_in_a_line(file: Path, log: Path, t
 @pytest.mark.parametrize("line", SETTINGS)
 def test_settings_that_broke_it_once_are_refused_in_a_line(line: str, tmp_path: Path) -> None:
     sets = [part for text in line.split(" ") for part in ("--set", text.replace("\\udc80", "\udc80"))]
-    if line.startswith(("faults", "limits")):
+    if line.startswith(("faults", "requirements")):
         sets = ["--set", line]
     answer = ask(["run", "guo2015-case4", *sets, "--fmus", "none", "--no-page", "--out", str(tmp_path)], 5.0)
     assert not answer.mistake, answer.mistake
@@ -73,9 +73,9 @@ def test_columns_that_broke_a_step_test_once_are_refused(columns: bytes, tmp_pat
 
 @pytest.mark.parametrize("notes", ["{}", "[]", "[[1]]", '{"odd": 1}', "[" * 5000, "{"])
 def test_finds_that_are_none_are_refused_in_a_line(notes: str, tmp_path: Path) -> None:
-    (tmp_path / "odd.yaml").write_text("name: odd\nbase: guo2015-case4\n")
-    (tmp_path / "finds.json").write_text(notes)
-    answer = ask(["hunt", "--corpus", str(tmp_path)], 10.0)
+    (tmp_path / "odd.yaml").write_text("name: odd\nextends: guo2015-case4\n")
+    (tmp_path / "counterexamples.json").write_text(notes)
+    answer = ask(["falsify", "--corpus", str(tmp_path)], 10.0)
     assert not answer.mistake, answer.mistake
     assert answer.code == 2, answer
     assert answer.err.count("\n") == 1

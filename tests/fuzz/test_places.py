@@ -18,8 +18,8 @@ COMMANDS = {
     "run": ["run", *SHORT, "--out", "DIR"],
     "test": ["test", *SHORT, "--out", "DIR"],
     "test --junit": ["test", *SHORT, "--out", "KEPT/test", "--junit", "FILE.xml"],
-    "sweep": ["sweep", "guo2015-trial", "--every", "250", "--out", "DIR"],
-    "sweep --picture": ["sweep", "guo2015-trial", "--every", "250", "--out", "KEPT/study", "--picture", "FILE.png"],
+    "sweep": ["sweep", "guo2015-trial", "--stride", "250", "--out", "DIR"],
+    "sweep --figure": ["sweep", "guo2015-trial", "--stride", "250", "--out", "KEPT/study", "--figure", "FILE.png"],
     "check --junit": ["check", "LOG", "house", "--junit", "FILE.xml"],
     "compare --html": ["compare", "LOG", "LOG", "--html", "FILE.html"],
     "report": ["report", "LOG", "--out", "FILE.html"],
@@ -33,7 +33,7 @@ COMMANDS = {
     "live": ["live", "guo2015-case4", "--out", "FILE.html"],
     "new": ["new", "controller", "my_law", "--out", "DIR"],
     "import": ["import", "tpcap", "SCENE", "--out", "DIR"],
-    "hunt": ["hunt", "guo2015-trial", "--budget", "50", "--workers", "1", "--out", "DIR"],
+    "falsify": ["falsify", "guo2015-trial", "--budget", "50", "--jobs", "1", "--out", "DIR"],
     "test --coverage": ["test", *SHORT, "--coverage", "--out", "DIR"],
     "export rerun": ["export", "rerun", "LOG", "--out", "FILE.rrd"],
 }
@@ -44,7 +44,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a log, one that was cut, and a table."""
     folder = tmp_path_factory.mktemp("kept")
     ask(["run", *SHORT, "--no-page", "--out", str(folder)])
-    ask(["sweep", "guo2015-trial", "--every", "250", "--no-page", "--out", str(folder)])
+    ask(["sweep", "guo2015-trial", "--stride", "250", "--no-page", "--out", str(folder)])
     data = (folder / "run.mcap").read_bytes()
     (folder / "cut.mcap.part").write_bytes(data[: 9 * len(data) // 10])
     return folder

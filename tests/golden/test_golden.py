@@ -38,10 +38,10 @@ def told(summary: Summary) -> dict[str, Any]:
         "outcome": summary.outcome,
         "reason": summary.reason,
         "duration": rounded(summary.duration),
-        "shifts": summary.shifts,
+        "manoeuvres": summary.manoeuvres,
         "pose": [rounded(value) for value in (final.x, final.y, final.heading)],
         "events": [[rounded(event.t), event.to] for event in summary.events],
-        "margins": {check.id: rounded(check.margin) if check.judged else None for check in summary.checks},
+        "margins": {check.id: rounded(check.margin) if check.evaluated else None for check in summary.checks},
     }
 
 

@@ -90,7 +90,7 @@ class LiveModule:
 
 
 def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:
-    ending = scenario.ending
+    ending = scenario.stop_condition
     final = sum(1 << value for value in ending.final())
     known = places(tuple(scenario.models.items()))
     signals = [*known[ending.signal], *known["vehicle.speed"]]
@@ -111,4 +111,4 @@ def parameters(scenario: Scenario) -> list[float]:
 
 
 def times_of(scenario: Scenario) -> list[float]:
-    return [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(owner, 1) for owner in scenario.models)]
+    return [scenario.step_ns, scenario.stop_ns, *(scenario.decimation.get(owner, 1) for owner in scenario.models)]

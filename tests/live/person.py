@@ -8,7 +8,7 @@ LOOK = """() => {
   const { drive } = window.live, last = (name) => drive.history.last(name);
   return { prompt: drive.state("controller.prompt"), phase: drive.state("controller.phase"),
     speed: Math.abs(last("vehicle.speed")), advised: last("controller.advised_speed"),
-    shifts: last("controller.shifts"), gear: drive.state("vehicle.gear"), t: drive.t, over: drive.isOver };
+    manoeuvres: last("controller.manoeuvres"), gear: drive.state("vehicle.gear"), t: drive.t, over: drive.isOver };
 }"""
 LOOK_EVERY = 100
 """Of the drive's time [ms]."""
@@ -22,7 +22,7 @@ class Seen(NamedTuple):
     phase: str
     speed: float
     advised: float
-    shifts: float
+    manoeuvres: float
     gear: str
     t: float
     over: bool
@@ -42,7 +42,7 @@ def obeys(seen: Seen) -> tuple[str, float]:
 
 def hurries_once(seen: Seen) -> tuple[str, float]:
     """Return what one wants who is deaf to slow down until the first stop."""
-    if seen.shifts <= 1.0 and seen.phase in ("PRE_STEER", "PATH_TRACKING"):
+    if seen.manoeuvres <= 1.0 and seen.phase in ("PRE_STEER", "PATH_TRACKING"):
         return ("R", 1.6) if seen.prompt in ("REVERSE", "SLOW_DOWN") else ("", 0.0)
     return obeys(seen)
 

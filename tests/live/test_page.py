@@ -30,8 +30,8 @@ WHOLE = """(names) => names.map((name) => {
   const word = (value) => stateName(stateNames(lab.engine.models, "controller.phase"), value);
   for (let i = 1; i < run.lines; i++) if (changes(i)) events.push([at(i, 0), word(at(i, phase))]);
   const margins = Object.fromEntries(checks.map((check) => [check.id, check.margin]));
-  const pose = AXES.map((axis) => n[`final.${axis}`]), shifts = n.shifts || 0;
-  return { outcome, reason, duration: n.duration, shifts, pose, events, margins };
+  const pose = AXES.map((axis) => n[`final.${axis}`]), manoeuvres = n.manoeuvres || 0;
+  return { outcome, reason, duration: n.duration, manoeuvres, pose, events, margins };
 })"""
 RECORD = Path(__file__).parents[1] / "golden" / "scenarios.yaml"
 """What the native FMUs do, to six digits."""
@@ -71,7 +71,7 @@ def test_the_valet_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
     fill(page, "vehicle.scene.boxes[6].y", "4")  # a wall, of which the controller is told by its map
     page.wait_for_function("() => !window.live.isDue")
     agrees(ghost(page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
-    assert ghost(page)["shifts"] == 3
+    assert ghost(page)["manoeuvres"] == 3
     as_on_record(page, scenarios)
     assert seen.console == []
 
@@ -127,7 +127,7 @@ TRIED = """(all) => all.map(([name, changes]) => {
   const { lab } = window.live;
   lab.load(name, changes);
   const { outcome, numbers } = lab.ghost();
-  return [outcome, numbers.shifts];
+  return [outcome, numbers.manoeuvres];
 })"""
 
 
@@ -147,7 +147,7 @@ def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page: Any) -> No
     found = drive(page, hurries_once)
     phases = page.evaluate("() => window.live.drive.history.spans('controller.phase').map((span) => span.value)")
     assert PHASES.index("TO_Q2") in phases
-    assert found["numbers"]["shifts"] >= 2
+    assert found["numbers"]["manoeuvres"] >= 2
     assert found["outcome"] == "parked"
 
 
@@ -218,7 +218,7 @@ def run_of(name: Any, *sets: Any) -> Any:
 
 def agrees(found: Any, summary: Any) -> None:
     assert (found["outcome"], found["reason"]) == (summary.outcome, summary.reason)
-    assert found["shifts"] == summary.shifts
+    assert found["manoeuvres"] == summary.manoeuvres
     for axis in ("x", "y", "heading"):
         assert found[f"final.{axis}"] == pytest.approx(getattr(summary.final, axis), rel=0.0, abs=1e-6)
 
@@ -400,10 +400,12 @@ def test_the_chart_shows_the_state_and_how_it_came(page: Any) -> None:
 
 def test_a_scenario_with_faults_says_what_it_disturbs(page: Any) -> None:
     page.select_option("#scenario", "fault-pose-frozen")
-    assert page.inner_text("#faults") == "This scenario disturbs what is received: freeze vehicle.odometry, 2 s on."
+    assert (
+        page.inner_text("#faults") == "This scenario disturbs what is received: stuck_at_last vehicle.odometry, 2 s on."
+    )
     page.evaluate("() => { const { drive } = window.live; while (drive.t < 2.1) drive.go(); }")
     page.wait_for_selector("#faults em:visible")
-    assert page.inner_text("#faults").endswith("freeze vehicle.odometry, 2 s on, now.")
+    assert page.inner_text("#faults").endswith("stuck_at_last vehicle.odometry, 2 s on, now.")
 
 
 def test_controllers_of_two_models_do_not_share_a_page() -> None:

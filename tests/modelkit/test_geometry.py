@@ -8,7 +8,7 @@ import shapely
 from shapely import affinity
 
 from modelkit.geometry import (
-    FAR,
+    NO_HIT,
     Box,
     Point,
     boxes_gap,
@@ -82,7 +82,7 @@ def test_ray() -> None:
             hits += 1
             assert ours == pytest.approx(part.distance(shapely.Point(start)), abs=1e-9)
         elif part.is_empty:
-            assert ours == FAR
+            assert ours == NO_HIT
     assert hits > 500
 
 
@@ -103,7 +103,7 @@ def test_cone() -> None:
             seen += 1
             assert ours == pytest.approx(part.distance(shapely.Point(start)), abs=1e-7)
         elif part.is_empty:
-            assert ours == FAR
+            assert ours == NO_HIT
     assert seen > 1000
 
 

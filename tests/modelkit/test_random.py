@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from modelkit.random import MASK, next_state, normal, seed_state, uniform
+from modelkit.random import UINT32_MASK, next_state, normal, seed_state, uniform
 
 COUNT = 20_000
 DOUBT = 1e-3
@@ -27,14 +27,14 @@ def test_the_first_numbers_are_marsaglias() -> None:
     assert next_state(2463534242) == 723471715
 
 
-@given(st.integers(1, MASK))
+@given(st.integers(1, UINT32_MASK))
 def test_a_state_is_never_zero_and_stays_in_32_bits(state: int) -> None:
-    assert 1 <= next_state(state) <= MASK
+    assert 1 <= next_state(state) <= UINT32_MASK
 
 
 @given(st.integers(-(2**31), 2**31 - 1))
 def test_any_seed_gives_a_state(seed: int) -> None:
-    assert 1 <= seed_state(seed) <= MASK
+    assert 1 <= seed_state(seed) <= UINT32_MASK
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 1000])

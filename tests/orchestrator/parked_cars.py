@@ -44,7 +44,7 @@ class CarInSlot(NamedTuple):
 def parking_scenarios() -> list[str]:
     """Return the scenarios in which the assist is meant to find a slot and park the car they are written for."""
     found = {name: load_scenario(name) for name in scenario_names() if name.startswith("apa-")}
-    return [name for name, item in found.items() if item.expect == "parked" and _finds_its_slot(item)]
+    return [name for name, item in found.items() if item.expected_outcome == "parked" and _finds_its_slot(item)]
 
 
 def _finds_its_slot(scenario: Scenario) -> bool:
@@ -56,7 +56,7 @@ def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:
     """Return what becomes of a shipped car in a scenario, judged by where GB/T 41630 wants it to stand."""
     own = load_scenario(name, [f"car={car}"])
     limits = [item for item in shipped_requirements("gbt41630") if item.id in POSES]
-    scenario = own.with_limits(limits)
+    scenario = own.with_requirements(limits)
     ran = run_scenario(scenario, files, kind="native")
     summary = summarize(ran.recording, scenario, ran.wall_time)
     nearest = float(ran.recording.signals["vehicle.clearance"].min())

@@ -18,12 +18,12 @@ from tests.orchestrator import bad_fmus, foreign_fmus
 
 SCENARIO = """
 name: {name}
-base: guo2015-case4
+extends: guo2015-case4
 stop_time: 0.3
-expect: not_parked
-limits: []
+expected_outcome: not_parked
+requirements: []
 system:
-  slaves: {{bad: {file}}}
+  components: {{bad: {file}}}
   connections: {{vehicle.advised_speed: bad.y, bad.u: vehicle.speed}}
 """
 

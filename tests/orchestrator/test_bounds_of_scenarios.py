@@ -22,10 +22,10 @@ from orchestrator.verdict.geometry import sample_path, things
 def test_a_polygon_has_three_corners_or_more(tmp_path: Path, capsys: Any, corners: Any) -> None:
     square = [[5, 5], [6, 5], [6, 6]]
     path = tmp_path / "few.yaml"
-    path.write_text(yaml.safe_dump({"base": "guo2015-case4", "polygons": [square, corners]}))
+    path.write_text(yaml.safe_dump({"extends": "guo2015-case4", "obstacles": [square, corners]}))
     assert main(["run", str(path), "--fmus", "none", "--no-page", "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err
-    assert f"polygons[2]: {len(corners)} corners: expected 3 or more" in said
+    assert f"obstacles[2]: {len(corners)} corners: expected 3 or more" in said
     assert said.count("\n") == 1
 
 
@@ -45,14 +45,14 @@ def test_a_run_ends_at_its_stop_time_also_between_two_steps() -> None:
 
 @pytest.mark.parametrize(("every", "end"), [(1, "0.9"), (2, "0.6")])
 def test_a_stop_time_that_a_fixed_step_does_not_reach_is_reported(every: int, end: str) -> None:
-    scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", f"every.vehicle={every}"])
+    scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", f"decimation.vehicle={every}"])
     ran = run_slaves(scenario, fixed(make_slaves(scenario, None, Messages()), "vehicle"), Messages())
     assert ran.end.t_ns == float(end) * 1e9
     assert any(f"the step of vehicle is fixed: a run ends at {end} s" in text for text in ran.remarks)
 
 
 def test_a_stop_time_before_the_end_of_a_fixed_step_is_refused() -> None:
-    scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", "every.vehicle=5"])
+    scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", "decimation.vehicle=5"])
     with pytest.raises(BadInput, match=r"stop_time: 1 s is less than the 1\.5 s which vehicle needs"):
         run_slaves(scenario, fixed(make_slaves(scenario, None, Messages()), "vehicle"), Messages())
 

@@ -16,7 +16,7 @@ from orchestrator.sweep.study.study_file import StudyFile
 from orchestrator.text.errors import BadInput
 from orchestrator.text.yaml_file import read_mapping
 
-BASE = "base: guo2015-case4\n"
+BASE = "extends: guo2015-case4\n"
 
 
 def write(folder: Path, text: str, name: str = "mine.yaml") -> str:
@@ -46,7 +46,7 @@ def test_a_car_file_says_nothing_twice(car: str) -> None:
 
 
 def test_a_car_with_something_changed_and_one_told_otherwise(tmp_path: Path) -> None:
-    path = write(tmp_path, BASE + "car: {base: zhang2022, width: 1.9, steering: {rate_limit: 400 deg/s}}")
+    path = write(tmp_path, BASE + "car: {extends: zhang2022, width: 1.9, steering: {rate_limit: 400 deg/s}}")
     scenario = load_scenario(path, ["vehicle.car.steering.ratio=20"])
     assert scenario.car == "zhang2022"
     assert scenario.controller["car.width"] == scenario.vehicle["car.width"] == 1.9
@@ -57,8 +57,8 @@ def test_a_car_with_something_changed_and_one_told_otherwise(tmp_path: Path) -> 
 
 
 def test_a_change_goes_with_the_car_below_and_another_car_takes_the_place_of_all(tmp_path: Path) -> None:
-    write(tmp_path, BASE + "car: {base: zhang2022, width: 1.9}", "below.yaml")
-    path = write(tmp_path, "base: below.yaml\ncar: {rear_overhang: 1 m}")
+    write(tmp_path, BASE + "car: {extends: zhang2022, width: 1.9}", "below.yaml")
+    path = write(tmp_path, "extends: below.yaml\ncar: {rear_overhang: 1 m}")
     changed = load_scenario(path)
     assert (changed.vehicle["car.width"], changed.vehicle["car.rear_overhang"]) == (1.9, 1.0)
     assert load_scenario(path, ["car.width=1.7"]).controller["car.rear_overhang"] == 1.0
@@ -72,7 +72,7 @@ def test_a_car_of_ones_own_lies_beside_the_scenario_that_names_it(tmp_path: Path
         tmp_path / "cars", "car: {width: 1.5, ultrasonic: {cycle: 60 ms}}\nvehicle: {chassis: {mass: 900}}", "own.yaml"
     )
     write(tmp_path / "cars", BASE + "car: own.yaml", "below.yaml")
-    scenario = load_scenario(write(tmp_path, "base: cars/below.yaml"))
+    scenario = load_scenario(write(tmp_path, "extends: cars/below.yaml"))
     assert scenario.vehicle["car.ultrasonic.cycle"] == scenario.controller["car.ultrasonic.cycle"] == 0.06
     assert scenario.vehicle["chassis.mass"] == 900.0
 
@@ -83,8 +83,8 @@ def test_a_car_of_ones_own_lies_beside_the_scenario_that_names_it(tmp_path: Path
         ("car: {widht: 2}", r"car\.widht: unknown; did you mean car\.width"),
         ("car: {width: 2 s}", r"car\.width: '2 s' is in 's'"),
         ("car: {width: 200}", r"car\.width: 200 is out of range"),
-        ("car: {base: zhang2023}", "zhang2023: no car of this name; did you mean zhang2022"),
-        ("car: {base: [1]}", r"car\.base: \[1\]: expected the name of a car"),
+        ("car: {extends: zhang2023}", "zhang2023: no car of this name; did you mean zhang2022"),
+        ("car: {extends: [1]}", r"car\.extends: \[1\]: expected the name of a car"),
         ("car: 3", "car: 3: expected the name of a car, a file, or a mapping"),
         ("car: own.yaml", r"own\.yaml(:\d+)?: controller: unknown; expected one of: .*car"),
     ],

@@ -61,7 +61,7 @@ def test_an_assist_that_believes_in_sensors_twice_as_quick_parks_all_the_same() 
 
 
 def test_with_sensors_two_and_a_half_times_as_slow_as_believed_it_parks_within_the_standard() -> None:
-    limits = "limits=[gbt41630, no-contact]"
+    limits = "requirements=[gbt41630, no-contact]"
     assert ended("apa-parallel", "vehicle.car.ultrasonic.cycle=0.1", limits) == ("parked", "all checks passed")
 
 

@@ -57,7 +57,7 @@ def test_documentation_has_every_entry_as_it_is(item: ClauseVerdict) -> None:
 def test_limits_that_say_who_asks_say_it_of_the_standard_that_names_them() -> None:
     """A number belongs to the standard it is from, or to nobody: then it is ours."""
     for item in EVERYTHING:
-        for limit in item.entry.requirements():
+        for limit in item.entry.required_limits():
             source = limit.source.removesuffix(", unverified")
             own = source == "house" or item.standard.standard.startswith(source)
             assert own or item.standard.key.startswith("cicap"), (item.entry.id, limit.id, limit.source)
@@ -75,8 +75,8 @@ def entry(**given: object) -> Clause:
         ({"scenarios": ["apa-parallel"]}, "an outcome or limits"),
         ({"scenarios": ["apa-paralel"], "outcome": ["parked"]}, "did you mean apa-parallel"),
         ({"step_tests": ["ded-sensor"]}, "did you mean dead-sensor"),
-        ({"scenarios": ["apa-parallel"], "limits": {"gbt4163": "all"}}, "did you mean gbt41630"),
-        ({"scenarios": ["apa-parallel"], "limits": {"gbt41630": ["shift"]}}, "did you mean shifts"),
+        ({"scenarios": ["apa-parallel"], "requirements": {"gbt4163": "all"}}, "did you mean gbt41630"),
+        ({"scenarios": ["apa-parallel"], "requirements": {"gbt41630": ["manoeuvre"]}}, "did you mean manoeuvres"),
         ({"scenarios": ["apa-parallel"], "outcome": ["lost"]}, "Input should be"),
     ],
 )
@@ -211,4 +211,4 @@ def test_documentation_is_written_by_the_file_that_it_names() -> None:
 
 def test_scenarios_of_the_catalogue_are_what_they_say() -> None:
     for name in ("apa-not-confirmed", "apa-switched-off", "apa-search-too-fast"):
-        assert load_scenario(name).expect != "parked"
+        assert load_scenario(name).expected_outcome != "parked"

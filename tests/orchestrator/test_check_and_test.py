@@ -111,7 +111,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
     assert main([*arguments, "--requirements", str(rules)]) == 1
     found = json.loads(capsys.readouterr().out)
     assert [case["name"] for case in found["scenarios"][0]["cases"] if not case["passed"]] == ["quick (us)"]
-    assert main([*arguments, "--set", "expect=failed"]) == 1
+    assert main([*arguments, "--set", "expected_outcome=failed"]) == 1
     assert "parked (expected: failed), " in (out / "index.html").read_text()
     root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert root.find(".//testcase[@name='outcome']/failure").get("message").startswith("parked")

@@ -49,7 +49,10 @@ def test_not_parked_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     [
         (["run", "guo2015-case44"], "apa: guo2015-case44: no scenario of this name; did you mean"),
         (["run", DEMO, "--fmus", "none", "--set", "vehicle.wheelbas=3"], "apa: --set: vehicle.wheelbas: unknown"),
-        (["run", DEMO, "--fmus", "none", "--set", "faults=[{signal: vehicle.spee, kind: freeze}]"], "no signal 'spee'"),
+        (
+            ["run", DEMO, "--fmus", "none", "--set", "faults=[{signal: vehicle.spee, kind: stuck_at_last}]"],
+            "no signal 'spee'",
+        ),
         (
             ["run", DEMO, "--fmus", "none", "--set", "controller.guo2015.k44=3"],
             "apa: --set: controller.guo2015.k44: unknown; did you mean controller.guo2015.k4",
@@ -242,7 +245,7 @@ def test_something_long_says_so_where_there_is_no_terminal(
         (["parameters", "steering.rate"], ["vehicle.car.steering.rate_limit", "controller.car.steering.rate_limit"]),
         (["parameters", "controller.guo2015.k?"], [f"controller.guo2015.k{number}" for number in (1, 2, 3, 4)]),
         (["signals", "vehicle.pose.*"], ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]),
-        (["systems", "fuzzy"], ["preview"]),
+        (["controllers", "fuzzy"], ["preview"]),
         (["scenarios", "case4-l"], ["guo2015-case4-left"]),
     ],
 )
@@ -261,7 +264,7 @@ def test_list_gives_defaults_ranges_limits_and_says_if_nothing_fits(capsys: pyte
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["unit"], row["low"], row["high"]) == ("rad/s", 0.01, 100.0)
     assert row["default"] == "9.94838 (570 deg/s)"
-    assert main(["list", "limits", "gbt41630"]) == 0
+    assert main(["list", "requirements", "gbt41630"]) == 0
     assert "\u00b1 0.150 m" in capsys.readouterr().out
     assert main(["list", "parameters", "nothing-of-this-name"]) == 2
     capsys.readouterr()
@@ -307,7 +310,7 @@ def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytes
     assert main(["run", *arguments, str(tmp_path / "run")]) == 0
     assert "changed: controller.guo2015.k4 = 3\n" in capsys.readouterr().out
     summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["changed"] == {"controller.guo2015.k4": "3", "title": "A <b>title</b>"}
+    assert summary["overrides"] == {"controller.guo2015.k4": "3", "title": "A <b>title</b>"}
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     assert "<title>A &lt;b&gt;title&lt;/b&gt; - with controller.guo2015.k4 = 3</title>" in page
     assert main(["test", *arguments, str(tmp_path / "test")]) == 0
@@ -318,9 +321,9 @@ def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytes
 
 def test_a_scenario_file_cannot_say_what_was_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "mine.yaml"
-    file.write_text("{base: guo2015-case4, changed: {a: b}}")
+    file.write_text("{extends: guo2015-case4, overrides: {a: b}}")
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 2
-    assert "changed: unknown" in capsys.readouterr().err
+    assert "overrides: unknown" in capsys.readouterr().err
 
 
 def test_the_folder_of_a_run_will_do_for_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

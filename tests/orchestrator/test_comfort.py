@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrator.verdict.comfort import peak_jerk, standstill_steering
+from orchestrator.verdict.comfort import dry_steering_count, peak_jerk
 
 STEPS = [0.005, 0.01, 0.05]
 
@@ -43,6 +43,6 @@ def test_standstills_with_a_turned_wheel_are_counted() -> None:
     #                 stands and turns | drives and turns | stands, hardly turns | stands and turns twice
     speed = np.array([0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0])
     wheel = np.array([0.0, 0.1, 0.2, 0.2, 0.9, 1.5, 1.5, 1.55, 1.6, 1.6, 1.0, 1.0, 1.5])
-    assert standstill_steering(speed, wheel) == 2.0
-    assert standstill_steering(np.ones(5), np.arange(5.0)) == 0.0
-    assert standstill_steering(np.zeros(1), np.zeros(1)) == 0.0
+    assert dry_steering_count(speed, wheel) == 2.0
+    assert dry_steering_count(np.ones(5), np.arange(5.0)) == 0.0
+    assert dry_steering_count(np.zeros(1), np.zeros(1)) == 0.0

@@ -17,7 +17,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.cli import main
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import LIMITS
+from orchestrator.scenario.requirements import REQUIREMENT_SETS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.steptest.run import run_step_test
@@ -26,7 +26,7 @@ from orchestrator.suite.junit import cases_of
 from orchestrator.verdict.contact import clearance_parts, contact_facts
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearances
-from orchestrator.verdict.standing import beyond_ends, slot_margin
+from orchestrator.verdict.standing import beyond_ends, outline_margin
 from orchestrator.verdict.summary import summarize
 from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 
@@ -36,7 +36,7 @@ MOVING = "{x: -4, y: 20, length: 1, width: 1, speed_y: -2, moves_at: 0, halts_at
 KERB = "{x1: -4, y1: -3, x2: -4, y2: 3, height: 0.1}"
 LOW_KERB = "{x1: -4, y1: -3, x2: -4, y2: 3, height: 0.05}"
 SQUARE = "[[-4.5, -2], [-3.5, -2], [-3.5, -1], [-4.5, -1]]"
-SETS = sorted(path.stem for path in LIMITS.glob("*.yaml"))
+SETS = sorted(path.stem for path in REQUIREMENT_SETS.glob("*.yaml"))
 
 
 def through(*more: str, things: str = f"scene.boxes=[{BOX}]") -> Scenario:
@@ -50,13 +50,13 @@ def driven(scenario: Scenario) -> Any:
 
 @pytest.fixture(scope="module")
 def through_box() -> Any:
-    return driven(through("limits=[]"))
+    return driven(through("requirements=[]"))
 
 
 @pytest.mark.parametrize("name", SETS)
 def test_no_set_of_requirements_calls_a_run_in_contact_parked(through_box: Any, name: str) -> None:
     recording, _ = through_box
-    scenario = through(f"limits=[{name}]")
+    scenario = through(f"requirements=[{name}]")
     summary = summarize(recording, scenario, 0.0)
     assert summary.outcome == "not_parked"
     assert summary.reason.split("; ")[0] == "contact"
@@ -70,18 +70,18 @@ def test_no_set_of_requirements_calls_a_run_in_contact_parked(through_box: Any, 
         f"scene.boxes=[{STRIP}]",
         f"scene.boxes=[{MOVING}]",
         f"scene.kerbs=[{KERB}]",
-        f"polygons=[{SQUARE}]",
+        f"obstacles=[{SQUARE}]",
     ],
 )
 def test_anything_of_the_scene_is_contact(things: str) -> None:
-    _, summary = driven(through("limits=[]", things=things))
+    _, summary = driven(through("requirements=[]", things=things))
     assert (summary.outcome, summary.reason) == ("not_parked", "contact")
     assert summary.penetration > 0.01
     assert summary.notes[0].startswith("contact from ")
 
 
 def test_a_wheel_at_a_low_kerb_is_reported() -> None:
-    _, summary = driven(through("limits=[]", things=f"scene.kerbs=[{LOW_KERB}]"))
+    _, summary = driven(through("requirements=[]", things=f"scene.kerbs=[{LOW_KERB}]"))
     assert (summary.outcome, summary.penetration) == ("parked", 0.0)
     assert "kerb lower than" in summary.notes[0]
 
@@ -89,13 +89,13 @@ def test_a_wheel_at_a_low_kerb_is_reported() -> None:
 def test_a_requirement_of_the_same_name_or_metric_does_not_take_its_place() -> None:
     lax = "{id: free of contact, signal: penetration, max: 9 m, source: me}"
     other = "{id: deep, signal: penetration, max: 9 m, source: me}"
-    _, summary = driven(through(f"limits=[{lax}, {other}]"))
+    _, summary = driven(through(f"requirements=[{lax}, {other}]"))
     assert summary.reason == "contact"
 
 
 def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys: Any) -> None:
     words = ["--fmus", "none", "--no-page", "--set", f"scene.boxes=[{BOX}]"]
-    words += ["--set", "limits=[house]"]
+    words += ["--set", "requirements=[house]"]
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "a")]) == 1
     capsys.readouterr()
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "b"), "--set", "contact_allowed=true"]) == 0
@@ -106,8 +106,11 @@ def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys:
 
 def test_check_test_and_judge_miss_it(tmp_path: Path, capsys: Any) -> None:
     words = ["--fmus", "none", "--set", f"scene.boxes=[{BOX}]"]
-    assert main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "t"), "--set", "limits=[]"]) == 1
-    assert main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "u"), "--set", "expect=not_parked"]) == 1
+    assert main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "t"), "--set", "requirements=[]"]) == 1
+    assert (
+        main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "u"), "--set", "expected_outcome=not_parked"])
+        == 1
+    )
     log = tmp_path / "t" / "guo2015-case4" / "run.mcap"
     capsys.readouterr()
     assert main(["check", str(log), "gbt41630", "--json"]) == 1
@@ -115,7 +118,7 @@ def test_check_test_and_judge_miss_it(tmp_path: Path, capsys: Any) -> None:
     assert [check["id"] for check in found["checks"] if not check["passed"]] == ["free of contact"]
     assert [check.id for check in judge(read_log(log), "gbt41630") if not check.passed] == ["free of contact"]
     assert "contact" in repr(read_log(log))
-    assert run("guo2015-case4", {"limits": "[]", "scene.boxes": f"[{BOX}]"}, fmus="none").outcome == "not_parked"
+    assert run("guo2015-case4", {"requirements": "[]", "scene.boxes": f"[{BOX}]"}, fmus="none").outcome == "not_parked"
 
 
 def test_a_step_test_of_the_vehicle_misses_it(tmp_path: Path) -> None:
@@ -141,7 +144,7 @@ def without(recording: Recording, *names: str) -> Recording:
 def test_a_vehicle_of_others_is_judged_by_its_poses(through_box: Any) -> None:
     """One that puts out no clearance, or says that it touches nothing; one without poses is not known to be free."""
     recording, summary = through_box
-    scenario = through("limits=[]")
+    scenario = through("requirements=[]")
     blind = without(recording, "vehicle.clearance")
     assert summarize(blind, scenario, 0.0).penetration == pytest.approx(summary.penetration, abs=1e-9)
     lying = without(recording)
@@ -159,8 +162,8 @@ def test_a_log_of_an_older_version_has_zero_in_contact(through_box: Any) -> None
     older = dict(recording.signals)
     older["vehicle.clearance"] = np.maximum(older["vehicle.clearance"], 0.0)
     read = Recording(recording.t_ns, older, recording.parameters, recording.variables, recording.info)
-    assert summarize(read, through("limits=[]"), 0.0).reason == "contact"
-    found = contact_facts(read, through("limits=[]"))
+    assert summarize(read, through("requirements=[]"), 0.0).reason == "contact"
+    found = contact_facts(read, through("requirements=[]"))
     assert found.scene == -found.depth < 0.0
 
 
@@ -225,7 +228,7 @@ def test_what_only_touches_is_in_contact() -> None:
 
 def test_the_headline_says_that_the_outline_is_beyond_an_end_of_the_slot_or_far_from_the_target(capsys: Any) -> None:
     """All in line with the target, within GB/T 41630's limits, which have none along the slot."""
-    scenario = load_scenario("guo2015-case4", ["limits=[]", "slot.x=-4"])
+    scenario = load_scenario("guo2015-case4", ["requirements=[]", "slot.x=-4"])
     recording, summary = driven(scenario)
     assert summary.standing
     assert all(text in summary.headline for text in summary.standing)
@@ -243,14 +246,14 @@ def test_which_end_of_the_slot_is_passed(turn: float) -> None:
     assert (ends if turn == 0.0 else ends[::-1]) == pytest.approx([-0.2, -0.8])
     front, rear = beyond_ends(np.array([[0.0, 0.0, 0.0]]), slot, car)
     assert max(front[0], rear[0]) == pytest.approx(0.5)
-    assert slot_margin(np.array([[0.0, 0.0, 0.0]]), slot, car)[0] == pytest.approx(-0.5)
+    assert outline_margin(np.array([[0.0, 0.0, 0.0]]), slot, car)[0] == pytest.approx(-0.5)
 
 
 @pytest.mark.parametrize(
     "things", [f"scene.boxes=[{STRIP}, {BOX}]", f"scene.boxes=[{MOVING}]", f"scene.kerbs=[{KERB}]"]
 )
 def test_clearance_by_poses_is_the_one_that_the_vehicle_puts_out(things: str) -> None:
-    recording, _ = driven(through("limits=[]", things=things))
+    recording, _ = driven(through("requirements=[]", things=things))
     own = recording.signals["vehicle.clearance"]
     ((_, distances),) = clearance_parts(without(recording, "vehicle.clearance"), through(things=things))
     found = distances.scene

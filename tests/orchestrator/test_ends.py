@@ -179,7 +179,7 @@ def test_standard_output_that_is_full_is_said(tmp_path: Path) -> None:
 
 def test_letters_that_a_terminal_has_not_cost_no_run(tmp_path: Path) -> None:
     scenario = tmp_path / "own.yaml"
-    scenario.write_text("base: guo2015-case4\ntitle: '→ 車庫'\nstop_time: 0.1\n", encoding="utf-8")
+    scenario.write_text("extends: guo2015-case4\ntitle: '→ 車庫'\nstop_time: 0.1\n", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "cp1252"}
     command = [sys.executable, "-m", "orchestrator", "run", str(scenario), "--fmus", "none", "--no-page"]
     done = subprocess.run([*command, "--out", str(tmp_path / "o")], capture_output=True, env=environment)

@@ -55,15 +55,15 @@ def test_override_with_nan_and_with_the_name_of_a_state() -> None:
 
 
 def test_freeze_holds_the_value_at_its_start() -> None:
-    assert seen(run(fault("freeze"))) == pytest.approx([0, 0.01, 0.02, 0.03, 0.03, 0.03, *TIMES[6:]])
+    assert seen(run(fault("stuck_at_last"))) == pytest.approx([0, 0.01, 0.02, 0.03, 0.03, 0.03, *TIMES[6:]])
 
 
 def test_drop_keeps_the_last_value_received() -> None:
-    assert seen(run(fault("drop"))) == pytest.approx([0, 0.01, 0.02, 0.02, 0.02, 0.02, *TIMES[6:]])
+    assert seen(run(fault("dropout"))) == pytest.approx([0, 0.01, 0.02, 0.02, 0.02, 0.02, *TIMES[6:]])
 
 
 def test_drop_by_chance_is_the_same_for_the_same_seed() -> None:
-    chance = fault("drop", probability=0.5, start=0.0, stop=1.0)
+    chance = fault("dropout", probability=0.5, start=0.0, stop=1.0)
     first, second, other = (seen(run(chance, seed=seed)) for seed in (5, 5, 6))
     assert first == second != other
     assert first != pytest.approx(TIMES)
@@ -96,14 +96,14 @@ def test_a_slow_receiver_is_disturbed_at_its_own_instants() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"signal": "plan.pose.x", "kind": "freeze"}, "expected one of plant, brain before the dot"),
-        ({"signal": "plant.pose.z", "kind": "freeze"}, "plant has no signal 'pose.z'; did you mean"),
-        ({"signal": "plant.rays", "kind": "freeze"}, "plant.rays is not an input of any component"),
+        ({"signal": "plan.pose.x", "kind": "stuck_at_last"}, "expected one of plant, brain before the dot"),
+        ({"signal": "plant.pose.z", "kind": "stuck_at_last"}, "plant has no signal 'pose.z'; did you mean"),
+        ({"signal": "plant.rays", "kind": "stuck_at_last"}, "plant.rays is not an input of any component"),
         ({"signal": "plant.pose.x", "kind": "override"}, "kind override needs value"),
         ({"signal": "plant.pose.x", "kind": "noise"}, "kind noise needs sigma"),
         ({"signal": "plant.pose.x", "kind": "delay"}, "kind delay needs delay"),
         ({"signal": "plant.left", "kind": "noise", "sigma": 1}, "noise needs a real signal"),
-        ({"signal": "plant.pose.x", "kind": "freeze", "start": 2, "stop": 1}, "stop 1 s is not after start 2 s"),
+        ({"signal": "plant.pose.x", "kind": "stuck_at_last", "start": 2, "stop": 1}, "stop 1 s is not after start 2 s"),
         ({"signal": "plant.pose.x", "kind": "noise", "sigma": "3 deg"}, "'3 deg' is in 'deg', expected"),
     ],
 )

@@ -48,7 +48,7 @@ def test_one_with_names_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_a_misspelled_name_and_a_unit_that_does_not_fit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = foreign_fmus.controller(tmp_path, request="steering_request")
     found = report(capsys, str(wrong), "--as", "controller", code=1)
-    assert found["missing"] == ["shifts: limits on the number of manoeuvres are not evaluated"]
+    assert found["missing"] == ["manoeuvres: limits on the number of manoeuvres are not evaluated"]
     assert "vehicle.steering_wheel_request; did you mean steering_request?" in found["not_fed"]
     assert found["no_unit"] == ["measured_speed", "steering_request"]
     metres = foreign_fmus.changed(

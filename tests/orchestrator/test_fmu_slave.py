@@ -29,7 +29,7 @@ def silent(name: str, status: int, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "more", [[], ["every={controller: 2}"], ["faults=[{signal: vehicle.odometry.x, kind: noise, sigma: 2 mm}]"]]
+    "more", [[], ["decimation={controller: 2}"], ["faults=[{signal: vehicle.odometry.x, kind: noise, sigma: 2 mm}]"]]
 )
 def test_fmus_give_the_bits_of_the_models_in_process(files: dict[str, Path], more: list[str]) -> None:
     scenario = load_scenario(DEMO, ["stop_time=15", *more])
@@ -45,7 +45,7 @@ def test_fmus_give_the_bits_of_the_models_in_process(files: dict[str, Path], mor
 def test_nothing_is_left_behind(files: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     run_scenario(load_scenario(DEMO, ["stop_time=0.1"]), files, kind="python")
-    bad = load_scenario(DEMO, ["stop_time=0.1", "faults=[{signal: vehicle.nothing, kind: freeze}]"])
+    bad = load_scenario(DEMO, ["stop_time=0.1", "faults=[{signal: vehicle.nothing, kind: stuck_at_last}]"])
     with pytest.raises(BadInput):
         run_scenario(bad, files, kind="python")
     assert list(tmp_path.iterdir()) == []

@@ -54,7 +54,7 @@ def test_an_older_report_goes_as_the_new_log_comes(tmp_path: Path, capsys: pytes
 def test_two_scenarios_of_one_name_are_refused_and_junit_holds_all(tmp_path: Path) -> None:
     for number in (1, 2):
         (tmp_path / str(number)).mkdir()
-        (tmp_path / str(number) / "one.yaml").write_text("base: guo2015-case4\nstop_time: 0.1\n")
+        (tmp_path / str(number) / "one.yaml").write_text("extends: guo2015-case4\nstop_time: 0.1\n")
     files = [str(tmp_path / "1" / "one.yaml"), str(tmp_path / "2" / "one.yaml"), str(tmp_path / "none.yaml")]
     assert main(["test", *files, "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
     root = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
@@ -167,7 +167,7 @@ def test_no_module_of_the_current_folder_is_run(words: Any, tmp_path: Path) -> N
     environment.pop("PYTHONSAFEPATH", None)
     apa = "import sys; from orchestrator.cli import main; sys.exit(main(sys.argv[1:]))"
     words = ["trial.yaml" if word == "STUDY" else word for word in words]
-    command = [sys.executable, "-P", "-c", apa, *words, "--workers", "1", "--out", "out"]
+    command = [sys.executable, "-P", "-c", apa, *words, "--jobs", "1", "--out", "out"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert not (tmp_path / "ran").exists(), (tmp_path / "ran").read_text()

@@ -99,8 +99,8 @@ def test_an_fmu_that_cannot_be_run_is_one_line_and_the_others_go_on(
 
 def test_a_scenario_that_cannot_be_read_fails_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bad, same = tmp_path / "bad one.yaml", tmp_path / "same.yaml"
-    bad.write_text("base: nothing-of-this-name")
-    same.write_text("{name: fault-pose-nan, base: fault-pose-frozen}")
+    bad.write_text("extends: nothing-of-this-name")
+    same.write_text("{name: fault-pose-nan, extends: fault-pose-frozen}")
     names = ["fault-pose-nan", str(bad), str(same)]
     assert main(["test", *names, "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
     printed = capsys.readouterr().out
@@ -115,15 +115,15 @@ def test_what_is_not_measured_is_never_passed(theirs: Path, tmp_path: Path, caps
     out = tmp_path / "out"
     assert main(["test", "guo2015-case4", "apa-parallel", "--controller", str(theirs), "--out", str(out)]) == 1
     summary = json.loads((out / "guo2015-case4" / "summary.json").read_text())
-    assert summary["shifts"] is None
-    check = next(item for item in summary["checks"] if item["signal"] == "shifts")
-    assert (check["passed"], check["judged"], check["value"], check["note"]) == (False, False, None, "not measured")
-    assert "not measured: shifts" in summary["reason"]
+    assert summary["manoeuvres"] is None
+    check = next(item for item in summary["checks"] if item["signal"] == "manoeuvres")
+    assert (check["passed"], check["evaluated"], check["value"], check["note"]) == (False, False, None, "not measured")
+    assert "not measured: manoeuvres" in summary["reason"]
     parallel = json.loads((out / "apa-parallel" / "summary.json").read_text())
     assert "time to park" in parallel["reason"].partition("not measured")[2]
     root: Any = ElementTree.parse(out / "junit.xml").getroot()
-    skipped = root.find("testsuite/testcase[@name='shifts (GB/T 41630)']/skipped")
-    assert skipped.get("message") == "shifts: not measured, not evaluated"
+    skipped = root.find("testsuite/testcase[@name='manoeuvres (GB/T 41630)']/skipped")
+    assert skipped.get("message") == "manoeuvres: not measured, not evaluated"
     capsys.readouterr()
     assert main(["check", str(out / "guo2015-case4" / "run.mcap"), "gbt41630"]) == 1
     assert "1 not evaluated" in capsys.readouterr().out
@@ -136,7 +136,7 @@ def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.Capt
     captured = capsys.readouterr()
     assert "controller has no output phase: PARKED (9) of it says" in captured.err
     assert "not_parked: the controller has no output phase" in captured.out
-    assert "shifts not counted" in captured.out
+    assert "manoeuvres not counted" in captured.out
     assert "clearance" in captured.out
     assert "not evaluated" in captured.out
 
@@ -149,7 +149,7 @@ def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, caps
     assert about["controller"].startswith(f"{theirs}, SHA-256 ")
     assert "Vehicle.fmu, SHA-256 " in about["vehicle"]
     assert about["command"] == f"apa test guo2015-case4 --controller {theirs} --out '{out}' --json"
-    assert about["warning"].count("controller has no output shifts") == 1
+    assert about["warning"].count("controller has no output manoeuvres") == 1
     page = (out / "index.html").read_text(encoding="utf-8")
     suite = ElementTree.parse(out / "junit.xml").getroot()[0]
     assert suite.get("timestamp") == about["when"]

@@ -25,7 +25,7 @@ def test_it_is_parked_although_it_was_told_no_target(results: Path) -> None:
     assert (summary["outcome"], summary["reason"]) == ("parked", "all checks passed")
     assert abs(summary["final"]["lateral_error"]) < 0.03
     assert abs(summary["final"]["longitudinal_error"]) < 0.05
-    assert summary["final"]["slot_margin"] > 0.05
+    assert summary["final"]["outline_margin"] > 0.05
 
 
 def test_its_log_shows_the_target(results: Path, tmp_path: Path) -> None:

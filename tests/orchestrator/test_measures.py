@@ -85,7 +85,7 @@ def test_what_the_models_do_not_have() -> None:
     made = facts_of(recording(VALUES), Scenario(name="here")).numbers
     assert made["max_speed"] == 3.0
     assert made["duration"] == 2.0
-    assert math.isnan(made["shifts"])
+    assert math.isnan(made["manoeuvres"])
     assert math.isnan(made["min_clearance"])
 
 

@@ -61,7 +61,7 @@ def test_the_system_of_a_controller_with_names_of_its_own_is_written_and_drives(
     assert "1 lines are commented out" in said
     text = Path("mine/two_arcs.yaml").read_text()
     system = yaml.safe_load(text)["system"]
-    assert system["slaves"] == {"controller": "../two_arcs.fmu"}
+    assert system["components"] == {"controller": "../two_arcs.fmu"}
     assert system["connections"] == {
         "controller.Yaw [rad]": "vehicle.odometry.heading",
         "vehicle.steering_wheel_request": "controller.StrWhlAngReq",
@@ -69,7 +69,7 @@ def test_the_system_of_a_controller_with_names_of_its_own_is_written_and_drives(
         "vehicle.steering_active": True,
         "vehicle.speed_control_active": True,
     }
-    assert system["roles"] == {"request": "controller.StrWhlAngReq", "shifts": "controller.Moves"}
+    assert system["roles"] == {"request": "controller.StrWhlAngReq", "manoeuvres": "controller.Moves"}
     marked = [line for line in text.splitlines()[5:] if line.startswith("    ")]
     assert len(marked) == 8
     assert all("# ?" in line for line in marked)
@@ -88,7 +88,7 @@ def test_a_vehicle_and_both_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     c_fmus.plant(tmp_path)
     assert main(["new", "scenario", "car", "--fmu", "plant.fmu"]) == 0
     system = yaml.safe_load(Path("car.yaml").read_text())["system"]
-    assert system["slaves"] == {"vehicle": "plant.fmu"}
+    assert system["components"] == {"vehicle": "plant.fmu"}
     assert system["connections"]["vehicle.Demand [m/s]"] == "controller.speed_request"
     assert system["connections"]["controller.odometry.y"] == "-vehicle.South [m]"
     assert system["roles"]["pose"] == "vehicle.East [m], -vehicle.South [m], vehicle.Course [rad]"

@@ -88,7 +88,7 @@ def test_all_rows_says_how_many_have_none() -> None:
 def test_a_sweep_says_so_and_resume_makes_these_runs(
     study: Path, tmp_path: Path, monkeypatch: Any, capsys: Any, cause: Exception
 ) -> None:
-    words = ["sweep", str(study), "--no-page", "--chunk", "1", "--workers", "1"]
+    words = ["sweep", str(study), "--no-page", "--chunk", "1", "--jobs", "1"]
     assert main([*words, "--fmus", "none", "--out", str(tmp_path / "whole")]) == 0
     in_threads(monkeypatch, Failing(run_scenario, cause, {2, 3}))
     capsys.readouterr()
@@ -121,7 +121,7 @@ def test_the_table_of_a_notebook_raises_it(study: Path, tmp_path: Path, monkeypa
 
 def test_a_hunt_has_no_result(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
     monkeypatch.setattr("orchestrator.sweep.batch.compiled", lambda *given: Failing(None, OSError(28, "full"), {1, 2}))
-    assert main(["hunt", "apa-world", "--budget", "50", "--workers", "1", "--out", str(tmp_path)]) == 2
+    assert main(["falsify", "apa-world", "--budget", "50", "--jobs", "1", "--out", str(tmp_path)]) == 2
     said = capsys.readouterr()
     assert "no result" in said.err
     assert "could not take place: " in said.err
@@ -165,7 +165,7 @@ def test_what_was_not_measured_is_no_good_margin() -> None:
         "mode": nan,
         "end": np.array([ends.ENDLESS], dtype=object),
         "touched.speed": nan,
-        **dict.fromkeys(("final.heading_error", "final.lateral_error", "final.slot_margin"), zero),
+        **dict.fromkeys(("final.heading_error", "final.lateral_error", "final.outline_margin"), zero),
     }
     for goal in ends.GOALS:
         assert goal.margins is not None

@@ -27,12 +27,12 @@ from orchestrator.verdict.geometry import CarOutline, place, slot_box
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.numbers import NUMBERS
 from orchestrator.verdict.outcome import state_name
-from orchestrator.verdict.standing import slot_margin
+from orchestrator.verdict.standing import outline_margin
 from orchestrator.verdict.summary import Final, Summary, summarize
 from orchestrator.verdict.truth import joined, truth_of
 
 CASE_4 = load_scenario("guo2015-case4")
-SLOT_ONLY = load_scenario("guo2015-case4", ["limits=[]"])
+SLOT_ONLY = load_scenario("guo2015-case4", ["requirements=[]"])
 Q3 = (-7.608, -3.056, 0.0)
 PLANT = {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)}
 KNOWN = {f"controller.{item.name}": item for item in variables(ControllerOutput)} | {
@@ -53,7 +53,7 @@ def standing(
     end |= {
         "controller.phase": float(phase),
         "controller.reason": 0.0,
-        "controller.shifts": 1.0,
+        "controller.manoeuvres": 1.0,
         "vehicle.clearance": 1.0,
     }
     end |= more
@@ -101,8 +101,8 @@ def test_what_was_not_measured_is_not_met() -> None:
     blind = standing()
     for name in ("vehicle.speed", "vehicle.pose.x", "vehicle.pose.heading"):
         del blind.signals[name]
-    limits = [limit for limit in CASE_4.limits if limit.signal != "vehicle.speed"]
-    found = summarize(blind, CASE_4.model_copy(update={"limits": limits}), 1.0)
+    limits = [limit for limit in CASE_4.requirements if limit.signal != "vehicle.speed"]
+    found = summarize(blind, CASE_4.model_copy(update={"requirements": limits}), 1.0)
     assert found.outcome == "not_parked"
     assert found.reason.startswith("not measured: the car's speed, final heading, final lateral position")
     assert {check.note for check in found.checks if check.signal.endswith("_error")} == {"not measured"}
@@ -122,33 +122,37 @@ def test_a_phase_without_names_means_ours() -> None:
 
 
 def test_the_scenario_says_what_ends_a_run_and_what_done_means() -> None:
-    ending = {"signal": "vehicle.gear", "done": ["PARK"], "failed": [], "over": ["NEUTRAL"], "standstill": "1 s"}
-    scenario = load_scenario("guo2015-case4", [f"ending={json.dumps(ending)}"])
+    ending = {"signal": "vehicle.gear", "succeeded": ["PARK"], "failed": [], "ended": ["NEUTRAL"], "standstill": "1 s"}
+    scenario = load_scenario("guo2015-case4", [f"stop_condition={json.dumps(ending)}"])
     assert verdict(scenario, phase=GuoPhase.TO_Q2, **{"vehicle.gear": 0.0}).outcome == "parked"
     assert why(verdict(scenario, phase=GuoPhase.TO_Q2, **{"vehicle.gear": 2.0})) == ("not_parked", "neutral")
     assert why(verdict(scenario, **{"vehicle.gear": 1.0})) == ("not_parked", "stop time reached in reverse")
 
 
 def test_an_ending_of_its_own_ends_the_run() -> None:
-    early = load_scenario("guo2015-case4", ["ending={done: [PARKED], over: [PRE_STEER], standstill: 0.1 s}"])
+    early = load_scenario(
+        "guo2015-case4", ["stop_condition={succeeded: [PARKED], ended: [PRE_STEER], standstill: 0.1 s}"]
+    )
     ran = run_scenario(early)
     assert ran.end.reason == "standstill"
     assert (
         state_name(ran.recording.states("controller.phase"), ran.recording.signals["controller.phase"][-1])
         == "PRE_STEER"
     )
-    with pytest.raises(BadInput, match=r"ending: 'PARKD' is no state of controller\.phase; did you mean PARKED"):
-        run_scenario(load_scenario("guo2015-case4", ["ending={done: [PARKD]}"]))
+    with pytest.raises(
+        BadInput, match=r"stop_condition: 'PARKD' is no state of controller\.phase; did you mean PARKED"
+    ):
+        run_scenario(load_scenario("guo2015-case4", ["stop_condition={succeeded: [PARKD]}"]))
 
 
 def test_a_road_is_finished_not_parked() -> None:
-    road = load_scenario("preview", ["limits=[]"])
-    assert (road.task, road.expect, road.target) == ("drive", "finished", None)
+    road = load_scenario("preview", ["requirements=[]"])
+    assert (road.task, road.expected_outcome, road.target) == ("drive", "finished", None)
     assert why(verdict(road)) == ("finished", "all checks passed")
     assert why(verdict(road, phase=GuoPhase.PATH_TRACKING)) == ("not_finished", "stop time reached in path_tracking")
     assert math.isnan(verdict(road).final.lateral_error)
     with pytest.raises(BadInput, match="expect: 'parked' is no outcome of task drive, expected finished"):
-        load_scenario("preview", ["expect=parked"])
+        load_scenario("preview", ["expected_outcome=parked"])
 
 
 def test_a_controller_told_another_target_is_judged_by_the_true_one() -> None:
@@ -177,7 +181,7 @@ def test_a_log_without_a_target_is_judged_by_what_the_controller_was_told() -> N
     assert math.isnan(summarize(foreign, scenario, 1.0).final.lateral_error)
 
 
-KERB = ["slot={x: 0, y: 0, length: 7, width: 2.4}", "target={x: -1.2, y: 0}", "limits=[gbt41630]"]
+KERB = ["slot={x: 0, y: 0, length: 7, width: 2.4}", "target={x: -1.2, y: 0}", "requirements=[gbt41630]"]
 
 
 @pytest.mark.parametrize(
@@ -215,7 +219,7 @@ def test_the_margin_is_the_outlines_distance_to_the_slots_edges(
     pose: tuple[float, ...], slot: tuple[float, ...]
 ) -> None:
     car = CarOutline(3.2, 0.6, 0.85, 2.4)
-    found = float(slot_margin(np.array([pose]), np.array([slot]), np.array([car]))[0])
+    found = float(outline_margin(np.array([pose]), np.array([slot]), np.array([car]))[0])
     sides: Any = dict(zip(("x", "y", "heading", "length", "width"), slot, strict=True))
     scenario = Scenario(name="a", slot=sides)
     assert scenario.slot is not None

@@ -6,7 +6,7 @@ import pytest
 from orchestrator.grid.parking_world.factors import FACTORS, HITCH
 from orchestrator.grid.parking_world.outcome import DRIVER, FALSE, MOVING, PARKED, STANDING, end_of, is_valid
 from orchestrator.grid.parking_world.scene import BIN, OVERHANG, ROWS, parameters
-from orchestrator.grid.parking_world.study import VALET, study
+from orchestrator.grid.parking_world.study import VALET_SYSTEM, study
 from orchestrator.sweep.study.space import Space
 
 SPACE = Space(FACTORS, lambda values, seeds: np.zeros((len(seeds), 1)))
@@ -18,7 +18,7 @@ def drawn(count: int = 200) -> dict[str, np.ndarray]:
 
 
 def test_rows_do_not_depend_on_the_system() -> None:
-    one, other = study(20, 3), study(20, 3, VALET)
+    one, other = study(20, 3), study(20, 3, VALET_SYSTEM)
     assert np.array_equal(one.design.values, other.design.values, equal_nan=True)
     assert one.scenario.controller["system"] != other.scenario.controller["system"]
 

@@ -53,7 +53,7 @@ def test_what_is_hardly_meant_is_said(setting: str, said: str) -> None:
         "step=inf",
         "stop_time=1e-9",
         "slot.x=1e7",
-        "every.vehicle=1e7",
+        "decimation.vehicle=1e7",
     ],
 )
 def test_what_cannot_be_is_refused(setting: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

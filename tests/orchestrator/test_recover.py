@@ -20,8 +20,8 @@ from orchestrator.text.errors import BadInput
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 NEVER_ENDING = [
     *("--set", "stop_time=100000"),
-    *("--set", "vehicle.driver.obeys_stop=false"),
-    *("--set", "vehicle.driver.obeys_direction=false"),
+    *("--set", "vehicle.driver.complies_with_stop=false"),
+    *("--set", "vehicle.driver.complies_with_direction=false"),
     *("--set", "faults=[{signal: vehicle.brake_request, kind: override, value: false}]"),
 ]
 

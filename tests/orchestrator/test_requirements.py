@@ -105,7 +105,9 @@ def test_windows_that_mean_nothing_are_refused(window: Any) -> None:
 
 def test_what_another_controller_does_not_put_out_opens_no_window() -> None:
     run = recording()
-    assert not check(run, max_abs=9.0, window={"after": {"signal": "vehicle.driver_takeover", "equals": True}}).judged
+    assert not check(
+        run, max_abs=9.0, window={"after": {"signal": "vehicle.driver_takeover", "equals": True}}
+    ).evaluated
 
 
 def test_states_by_name() -> None:
@@ -170,7 +172,7 @@ def test_a_file_names_its_faulty_entry(tmp_path: Path) -> None:
         read_requirements(file)
 
 
-@pytest.mark.parametrize("file", sorted((ROOM / "limits").glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("file", sorted((ROOM / "requirements").glob("*.yaml")), ids=lambda path: path.stem)
 def test_shipped_sets_can_be_read_and_survive_a_log(file: Any) -> None:
     for requirement in read_requirements(file):
         assert Requirement.model_validate(requirement.model_dump(mode="json")) == requirement

@@ -117,7 +117,7 @@ def test_runs_are_listed_with_time_change_outcome_and_path(
     rows = json.loads(capsys.readouterr().out)
     assert [row["path"] for row in rows] == ["runs/demo-2", "runs/demo"]
     assert rows[0]["time"] == "2023-11-14T22:15:00Z"
-    assert rows[0]["changed"] == "stop_time = 0.2, vehicle.driver.reaction_delay = 0.5"
+    assert rows[0]["overrides"] == "stop_time = 0.2, vehicle.driver.reaction_delay = 0.5"
     assert {row["outcome"] for row in rows} == {"not_parked"}
     assert main(["list", "runs", "elsewhere"]) == 2
     assert "elsewhere: no such folder" in capsys.readouterr().err

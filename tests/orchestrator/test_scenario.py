@@ -24,7 +24,7 @@ def test_every_shipped_scenario_loads_and_says_what_it_is(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.name == name
     assert scenario.title
-    assert scenario.limits
+    assert scenario.requirements
 
 
 def test_the_five_cases_and_their_car_are_shipped() -> None:
@@ -62,7 +62,9 @@ def test_layers_car_base_file_and_set(tmp_path: Path) -> None:
     write(tmp_path, "car: {wheelbase: 2.0, width: 1.5}", "small.yaml")
     base = "car: small.yaml\nseed: 7\nslot: {x: 1, y: 2, length: 6, width: 2}\ntarget: [1, 2, 3 deg]\n"
     write(tmp_path, base + "vehicle: {car.width: 1.6, driver.profile: [[0, 1], [2, 0.5]]}", "below.yaml")
-    path = write(tmp_path, "base: below.yaml\nslot: {width: 3}\nvehicle: {driver.profile: [[0, 0.3]]}\ntarget: {x: 9}")
+    path = write(
+        tmp_path, "extends: below.yaml\nslot: {width: 3}\nvehicle: {driver.profile: [[0, 0.3]]}\ntarget: {x: 9}"
+    )
     scenario = load_scenario(path, ["vehicle.car.front_overhang=90 cm", "controller.system=ntbpt", "stop_time=12 s"])
     assert scenario.vehicle["car.wheelbase"] == 2.0
     assert scenario.vehicle["car.width"] == 1.6
@@ -103,13 +105,13 @@ def test_a_list_that_is_set_replaces_the_list(tmp_path: Path, text: str) -> None
 
 
 def test_title_is_not_inherited(tmp_path: Path) -> None:
-    assert load_scenario(write(tmp_path, "base: guo2015-case4")).title == ""
+    assert load_scenario(write(tmp_path, "extends: guo2015-case4")).title == ""
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("stop_tim: 3", r"mine\.yaml(:\d+)?: stop_tim: unknown; did you mean stop_time\?"),
+        ("stop_tim: 3", r"mine\.yaml(:\d+)?: stop_tim: unknown; did you mean stop_time or stop_condition\?"),
         ("wheelbase: 3", r"wheelbase: unknown; did you mean .*car\.wheelbase"),
         ("car: {wheelbas: 3}", r"mine\.yaml(:\d+)?: car\.wheelbas: unknown; did you mean car.wheelbase"),
         ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean vehicle\.car\.steering\.ratio"),
@@ -122,24 +124,24 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
         ("vehicle: {body: 77}", r"vehicle\.body: 77 is none of 0 kinematic"),
         ("vehicle: {start: 3}", r"vehicle\.start: 3 is one value, expected a mapping or list of x, y, heading"),
         ("vehicle: {start: [1, 2, 3, 4]}", r"vehicle\.start: 4 values given, expected at most 3"),
-        ("vehicle: {driver: {obeys_stop: maybe}}", r"obeys_stop: 'maybe' is neither true nor false"),
+        ("vehicle: {driver: {complies_with_stop: maybe}}", r"complies_with_stop: 'maybe' is neither true nor false"),
         ("vehicle: 3", r"vehicle: 3: expected a mapping"),
         ("step: 0", r"step: 0 s is not a whole positive number of nanoseconds"),
         ("step: 0.5e-9", r"step: 5e-10 s is not a whole positive number"),
         ("stop_time: -1", r"stop_time: -1 is not a time from 0 to"),
         ("stop_time: 4 m", r"stop_time: '4 m' is in 'm', expected a number in s"),
         ("seed: -1", r"mine\.yaml(:\d+)?: seed: -1: input should be greater than or equal to 0"),
-        ("every: {plant: 2}", r"every\.plant: unknown; expected one of: vehicle, controller"),
-        ("every: {vehicle: 0}", r"every\.vehicle: 0 is not a whole number from 1"),
+        ("decimation: {plant: 2}", r"decimation\.plant: unknown; expected one of: vehicle, controller"),
+        ("decimation: {vehicle: 0}", r"decimation\.vehicle: 0 is not a whole number from 1"),
         ("slot: {x: 1}", r"mine\.yaml(:\d+)?: slot\.y: is missing"),
         ("slot: {x: 1, y: 2, length: 0, width: 1}", r"slot\.length"),
         ("faults: [{signal: vehicle.speed, kind: melt}]", r"faults\[1\]\.kind: 'melt'"),
-        ("faults: [{signal: vehicle.speed, kind: freeze, when: 3}]", r"faults\[1\]\.when: unknown"),
-        ("expect: glory", r"expect: 'glory'"),
-        ("limits: [hous]", r"hous: no set of limits of this name; did you mean house"),
+        ("faults: [{signal: vehicle.speed, kind: stuck_at_last, when: 3}]", r"faults\[1\]\.when: unknown"),
+        ("expected_outcome: glory", r"expected_outcome: 'glory'"),
+        ("requirements: [hous]", r"hous: no set of requirements of this name; did you mean house"),
         ("car: tank", r"tank: no car of this name; "),
-        ("base: guo2015-case9", r"guo2015-case9: no scenario of this name; did you mean guo2015-case"),
-        ("base: mine.yaml", r"base: inherits from itself"),
+        ("extends: guo2015-case9", r"guo2015-case9: no scenario of this name; did you mean guo2015-case"),
+        ("extends: mine.yaml", r"extends: inherits from itself"),
         ("a: [1", r"mine\.yaml(:\d+)?: line \d+, column \d+"),
         ("seed: 1\nseed: 2", r"line 2, column 1: key 'seed' is written twice"),
         ("- 1", r"mine\.yaml(:\d+)?: expected a mapping"),

@@ -9,8 +9,8 @@ from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.obstacle_map import box_corners, static_obstacles
 from orchestrator.scenario.plausible import implausible
-from orchestrator.scenario.polygons import box_corners, static_obstacles
 from orchestrator.scenario.slot_layout import SlotLayout, scene_of
 from orchestrator.text.errors import BadInput
 
@@ -87,7 +87,7 @@ def test_one_setting_moves_slot_target_neighbours_and_kerb() -> None:
 def test_further_boxes_stand_behind_the_generated_ones(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(
-        "base: apa-perpendicular\nslot_layout: {row: 1}\nscene: {boxes: [{x: 1.6, y: -6, length: 1, width: 1}]}\n"
+        "extends: apa-perpendicular\nslot_layout: {row: 1}\nscene: {boxes: [{x: 1.6, y: -6, length: 1, width: 1}]}\n"
     )
     scenario = load_scenario(str(file))
     assert len(static_obstacles(scenario)) == 5

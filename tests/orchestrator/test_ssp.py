@@ -26,8 +26,8 @@ SSM = """<ssm:ParameterMapping xmlns:ssm="http://ssp-standard.org/SSP1/SystemStr
 """
 JUDGED = """
 name: yard
-base: guo2015-case4
-limits: [house]
+extends: guo2015-case4
+requirements: [house]
 system:
   ssp: yard.ssp
   frames: {nautical: {y: right, ahead: 2.405 m}}
@@ -36,7 +36,7 @@ system:
     speed: plant.Speed
     wheel: -brain_arcs.StrWhlAngReq
     mode: {from: brain_arcs.State, map: {1: standby, 2: path tracking, 3: straighten, 4: parked}}
-    shifts: brain_arcs.Moves
+    manoeuvres: brain_arcs.Moves
 """
 
 
@@ -227,7 +227,8 @@ def test_a_number_without_unit_is_said_to_be_passed_on_as_it_is(tmp_path: Path) 
     small(tmp_path)
     fmu(tmp_path / "degrees.fmu", (("Wheel Angle, left", "output", "Real", "deg"),))
     (tmp_path / "both.yaml").write_text(
-        "task: run\nsystem:\n  slaves: {vehicle: none, controller: none, brain: degrees.fmu, plant: plant.fmu}\n"
+        "task: open_loop\nsystem:\n"
+        "  components: {vehicle: none, controller: none, brain: degrees.fmu, plant: plant.fmu}\n"
         "  connections: {plant.Steer Angle: 'brain.Wheel Angle, left'}\n"
     )
     _, system = assembled(tmp_path / "both.yaml")

@@ -1,4 +1,4 @@
-"""A standard's numbers stand in orchestrator/limits alone; what is told of them elsewhere is held to them here."""
+"""A standard's numbers stand in orchestrator/requirements alone; other places are checked against it."""
 
 import pytest
 
@@ -15,9 +15,9 @@ from orchestrator.scenario.slot_sizes import shipped_slot_sizes
 LIMITS = {item.id: item.limit for item in shipped_requirements("gbt41630")}
 OF_STANDARD = [item for item in variables(MODEL.params) if item.signal.source == "GB/T 41630"]
 SAME = {
-    "miss_lateral": "final lateral position",
-    "miss_heading": "final heading",
-    "shifts": "shifts",
+    "final_lateral_error": "final lateral position",
+    "final_heading_error": "final heading",
+    "manoeuvres": "manoeuvres",
     "stand_out": "outline in the slot",
     "out": "outline in the slot",
 }
@@ -55,12 +55,12 @@ def test_the_tight_slots_are_the_shortest_but_for_centimetres(name: str, kind: i
 def test_a_limit_of_a_standard_is_the_same_in_every_set_that_has_it() -> None:
     """Shifts into a parallel and into a perpendicular slot are two."""
     found: dict[tuple[str, str], set[float | str]] = {}
-    for name in shipped("limits"):
+    for name in shipped("requirements"):
         for item in shipped_requirements(name):
             if item.source.startswith(("GB/T", "ISO", "UN")):
                 found.setdefault((item.source, item.signal), set()).add(item.limit)
     twice = {key: limits for key, limits in found.items() if len(limits) > 1}
-    assert twice == {("GB/T 41630", "shifts"): {8.0, 7.0}}
+    assert twice == {("GB/T 41630", "manoeuvres"): {8.0, 7.0}}
 
 
 def test_there_are_such() -> None:

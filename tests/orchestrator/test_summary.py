@@ -25,7 +25,7 @@ PROMISED = {
         "outcome",
         "reason",
         "duration",
-        "shifts",
+        "manoeuvres",
         "max_speed",
         "peak_jerk",
         "final",
@@ -33,7 +33,7 @@ PROMISED = {
         "checks",
         "fmus",
     ),
-    *("standstill_steering", "wall_time", "real_time_factor", "seed", "versions", "notes"),
+    *("dry_steering_count", "wall_time", "real_time_factor", "seed", "versions", "notes"),
 }
 
 
@@ -47,7 +47,7 @@ def recording(phases: list[int], end: str = "standstill", reason: int = 0, **mor
         "vehicle.steering_wheel_angle": np.zeros(count),
         "controller.phase": np.array(phases, dtype=float),
         "controller.reason": np.full(count, float(reason)),
-        "controller.shifts": np.arange(count, dtype=float),
+        "controller.manoeuvres": np.arange(count, dtype=float),
     }
     signals.update({name: np.full(count, value) for name, value in more.items()})
     known = {f"controller.{item.name}": item for item in variables(ControllerOutput)}
@@ -60,8 +60,8 @@ def recording(phases: list[int], end: str = "standstill", reason: int = 0, **mor
 def summary(found: Recording, limits: list[dict[str, Any]] | None = None) -> Summary:
     scenario = load_scenario(DEMO)
     given = limits if limits is not None else []
-    judged = [type(scenario.limits[0]).model_validate(item) for item in given]
-    changed = scenario.model_copy(update={"limits": judged, "target": TARGET})
+    judged = [type(scenario.requirements[0]).model_validate(item) for item in given]
+    changed = scenario.model_copy(update={"requirements": judged, "target": TARGET})
     return summarize(found, changed, 0.02)
 
 
@@ -122,7 +122,7 @@ def test_the_promised_keys() -> None:
     assert set(data) >= PROMISED
     assert list(data["final"]) == [
         *("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle"),
-        *("speed", "slot_margin", "kerb_nearest", "kerb_farthest"),
+        *("speed", "outline_margin", "kerb_nearest", "kerb_farthest"),
     ]
     assert data["max_speed"] == 1.25
     assert data["real_time_factor"] == pytest.approx(0.5)

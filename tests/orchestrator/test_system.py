@@ -51,7 +51,7 @@ def test_systems_of_others_park_by_a_few_lines(
     assert len((desk / f"{name}.yaml").read_text().splitlines()) <= MOST_LINES
     assert main(["run", str(desk / f"{name}.yaml"), "--fmus", "none", "--out", str(tmp_path), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert (summary["outcome"], summary["shifts"]) == ("parked", 1)
+    assert (summary["outcome"], summary["manoeuvres"]) == ("parked", 1)
     assert abs(summary["final"]["lateral_error"]) < 0.03
     assert [event["to"] for event in summary["events"]] == ["PATH_TRACKING", "STRAIGHTEN", "PARKED"]
     used = {item["name"]: item for item in summary["fmus"]}
@@ -83,7 +83,7 @@ def test_parameters_and_faults_of_a_third_slave(desk: Path, tmp_path: Path, caps
     assert read_log(tmp_path / "run.mcap").parameters["gps.bias"] == 0.2
     assert main([*system, "--set", "gps.bais=20 cm"]) == 2
     assert "gps.bais: unknown; did you mean gps.bias?" in capsys.readouterr().err
-    fault = "[{signal: gps.pose, kind: freeze, start: 3}]"
+    fault = "[{signal: gps.pose, kind: stuck_at_last, start: 3}]"
     assert main([*system, "--force", "--set", f"faults={fault}"]) == 1
     assert read_log(tmp_path / "run.mcap").signals["controller.Yaw"][-1] == pytest.approx(
         math.degrees(read_log(tmp_path / "run.mcap").signals["gps.pose[3]"][300]) * -1.0, abs=1e-9
@@ -104,9 +104,9 @@ def test_names_that_no_other_tool_can_spell(tmp_path: Path) -> None:
     )
     text = bad_fmus.DESCRIPTION.format(guid="good").replace("</ModelVariables>", f"{outputs}</ModelVariables>")
     c_fmus.c_fmu(tmp_path / "odd.fmu", c_fmus.THEIR / "bad.c", text, "bad")
-    scenario = {"base": "guo2015-case4", "stop_time": 0.1, "limits": []}
+    scenario = {"extends": "guo2015-case4", "stop_time": 0.1, "requirements": []}
     system = {
-        "slaves": {"odd": "odd.fmu"},
+        "components": {"odd": "odd.fmu"},
         "connections": {"odd.u": "vehicle.speed", "vehicle.advised_speed": "odd.der(x)"},
     }
     (tmp_path / "odd.yaml").write_text(yaml.safe_dump({**scenario, "system": system}))
@@ -120,10 +120,10 @@ def test_names_that_no_other_tool_can_spell(tmp_path: Path) -> None:
 def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk: Path, tmp_path: Path) -> None:
     text = (desk / "two_arcs.yaml").read_text()
     mode = "{from: controller.State, states: {idle: 1, first: 2, second: 3, there: 4}}"
-    text = re.sub(r"mode: .*", f"mode: {mode}", text) + "ending: {done: [there]}\n"
+    text = re.sub(r"mode: .*", f"mode: {mode}", text) + "ending: {succeeded: [there]}\n"
     limit = "{id: slow, signal: vehicle.speed, max_abs: 1, window: {phase: TO_Q1}, source: us, required: false}"
     path = desk / "own_states.yaml"
-    path.write_text(f"{text}limits: [{limit}]\n")
+    path.write_text(f"{text}requirements: [{limit}]\n")
     assert main(["run", str(path), "--fmus", "none", "--out", str(tmp_path), "--quiet", "--no-page"]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert [event["to"] for event in summary["events"]] == ["FIRST", "SECOND", "THERE"]
@@ -132,7 +132,7 @@ def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk:
 
 def toys(text: str) -> tuple[Scenario, list[Slave]]:
     slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
-    written = {"slaves": {"plant": "p.fmu", "brain": "b.fmu"}, **yaml.safe_load(text)}
+    written = {"components": {"plant": "p.fmu", "brain": "b.fmu"}, **yaml.safe_load(text)}
     return Scenario(name="toys", system=SystemText(**written)), slaves
 
 
@@ -208,10 +208,10 @@ def test_what_does_not_fit_is_said_with_the_names_that_come_closest(text: str, s
     "system",
     [
         5,
-        {"slaves": 5},
-        {"slaves": {"a b": "x.fmu"}},
-        {"slaves": {"controller": None, "vehicle": "none"}},
-        {"slaves": {"sensor": "nothing.fmu"}},
+        {"components": 5},
+        {"components": {"a b": "x.fmu"}},
+        {"components": {"controller": None, "vehicle": "none"}},
+        {"components": {"sensor": "nothing.fmu"}},
         {"connections": 5},
         {"connections": {"vehicle.prompt": None}},
         {"connections": {"vehicle.prompt": {"from": "controller.prompt", "map": {"zz": 1}}}},
@@ -224,7 +224,7 @@ def test_a_system_that_has_no_meaning_is_bad_input(
     system: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "bad.yaml"
-    path.write_text(yaml.safe_dump({"base": "guo2015-case4", "system": system}))
+    path.write_text(yaml.safe_dump({"extends": "guo2015-case4", "system": system}))
     assert main(["run", str(path), "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
@@ -247,7 +247,7 @@ def test_a_loop_of_direct_feedthrough_is_said() -> None:
 
 def test_what_a_verdict_needs_and_nobody_plays_is_said() -> None:
     scenario, slaves = toys("roles: {pose: plant.pose}")
-    said = " ".join(remarks(assemble(scenario, slaves), scenario.ending))
+    said = " ".join(remarks(assemble(scenario, slaves), scenario.stop_condition))
     assert "has no output speed: standstill does not end the run" in said
     assert "no slave is called controller, nor plays its roles" in said
     assert "pose.x" not in said

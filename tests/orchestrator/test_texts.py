@@ -46,7 +46,10 @@ class Reader(Fmi2Slave):
         self.y = float(len(self.file))
         return True
 '''
-SCENARIO = "task: run\nstop_time: 0.05\nlimits: []\nsystem:\n  slaves: {vehicle: none, controller: none, table: %s}\n"
+SCENARIO = (
+    "task: open_loop\nstop_time: 0.05\nrequirements: []\n"
+    "system:\n  components: {vehicle: none, controller: none, table: %s}\n"
+)
 
 
 @pytest.fixture
@@ -109,7 +112,8 @@ def test_types_that_are_not_supported_are_named(folder: Path, capsys: pytest.Cap
 
 
 def test_a_text_of_the_fmu_in_the_place_of_the_vehicle(folder: Path) -> None:
-    text = "task: run\nstop_time: 0.05\nlimits: []\nsystem: {slaves: {controller: none, vehicle: two.fmu}}\n"
+    text = "task: open_loop\nstop_time: 0.05\nrequirements: []\n"
+    text += "system: {components: {controller: none, vehicle: two.fmu}}\n"
     (folder / "car.yaml").write_text(text + "vehicle: {file: tyre.tir}\n")
     out = folder / "out"
     assert main(["run", str(folder / "car.yaml"), "--no-page", "--out", str(out)]) == 0

@@ -14,7 +14,7 @@ from pathlib import Path
 Path({mark!r}).write_text("ran")
 raise ImportError("seen enough")
 """
-SCENARIO = "name: got\nbase: guo2015-case4\nsystem:\n  slaves: {controller: law.py:MODEL}\n"
+SCENARIO = "name: got\nextends: guo2015-case4\nsystem:\n  components: {controller: law.py:MODEL}\n"
 STEP_TEST = (
     "model: law.py:MODEL\nname: got\nstop_time: 1\nstep: 0.01\nexpect:\n  - {id: small, signal: y, always: {max: 1}}\n"
 )

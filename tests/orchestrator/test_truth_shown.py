@@ -21,7 +21,7 @@ from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import summarize
 
 TRUE = (-7.608, -3.056, 0.0)
-TOLD = load_scenario("guo2015-case4", ["controller.target.y=-3.2", "stop_time=2", "expect=not_parked"])
+TOLD = load_scenario("guo2015-case4", ["controller.target.y=-3.2", "stop_time=2", "expected_outcome=not_parked"])
 
 
 @pytest.fixture(scope="module")
@@ -62,15 +62,15 @@ def test_the_card_of_a_test_is_turned_to_the_true_target(ran: tuple[Ran, Path]) 
 def test_the_log_carries_what_is_true(ran: tuple[Ran, Path]) -> None:
     scenario, note = logged(read_log(ran[1]))
     assert note == ""
-    assert (scenario.target, scenario.slot, scenario.ending) == (TOLD.target, TOLD.slot, TOLD.ending)
-    assert scenario.limits == TOLD.limits
+    assert (scenario.target, scenario.slot, scenario.stop_condition) == (TOLD.target, TOLD.slot, TOLD.stop_condition)
+    assert scenario.requirements == TOLD.requirements
 
 
 def test_what_a_foreign_vehicle_does_not_have_stays_true(ran: tuple[Ran, Path]) -> None:
     """Its outline, its neighbours and the kerb are the scenario's, as it has no parameters for them."""
     kerb = "scene.kerbs=[[-15, -4.1, 5, -4.1, 0.1]]"
-    scenario, left_out = fitting(load_scenario("guo2015-case4", [kerb]), {"vehicle": []})
-    assert "vehicle.scene.boxes[1].x" in left_out
+    scenario, unsupported_parameters = fitting(load_scenario("guo2015-case4", [kerb]), {"vehicle": []})
+    assert "vehicle.scene.boxes[1].x" in unsupported_parameters
     assert scenario.given("vehicle") == {}
     recording = ran[0].recording
     theirs = {name: value for name, value in recording.parameters.items() if not name.startswith("vehicle.")}

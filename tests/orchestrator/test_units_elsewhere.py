@@ -34,7 +34,7 @@ def fmu(path: Path, *variables: tuple[str, str]) -> Path:
 
 
 def assembled(folder: Path, system: str) -> Any:
-    (folder / "scenario.yaml").write_text(f"task: run\nsystem: {system}\n")
+    (folder / "scenario.yaml").write_text(f"task: open_loop\nsystem: {system}\n")
     scenario, _, foreign = load_fitting(str(folder / "scenario.yaml"), [], NOBODY)
     return assemble(scenario, make_slaves(scenario, None, Messages(), foreign))
 
@@ -42,14 +42,14 @@ def assembled(folder: Path, system: str) -> Any:
 def test_an_output_that_is_judged_in_another_unit_is_refused_with_the_line_to_write(tmp_path: Path) -> None:
     fmu(tmp_path / "car.fmu", ("speed", "km/h"), ("pose.x", "m"))
     with pytest.raises(BadInput, match="is in km/h, but judged in m/s") as error:
-        assembled(tmp_path, "{slaves: {controller: none, vehicle: car.fmu}}")
+        assembled(tmp_path, "{components: {controller: none, vehicle: car.fmu}}")
     assert "roles: {speed: plant.speed}" in str(error.value)
-    assembled(tmp_path, "{slaves: {controller: none, vehicle: none, plant: car.fmu}, roles: {speed: plant.speed}}")
+    assembled(tmp_path, "{components: {controller: none, vehicle: none, plant: car.fmu}, roles: {speed: plant.speed}}")
 
 
 def test_a_unit_on_the_wrong_side_is_refused_with_the_line_to_write(tmp_path: Path) -> None:
     fmu(tmp_path / "car.fmu", ("angle", "rad"), ("bare", ""))
-    slaves = "slaves: {controller: none, plant: car.fmu}"
+    slaves = "components: {controller: none, plant: car.fmu}"
     with pytest.raises(BadInput) as error:
         assembled(tmp_path, f"{{{slaves}, connections: {{'vehicle.steering_wheel_request [deg]': plant.bare}}}}")
     assert "write 'vehicle.steering_wheel_request: plant.bare [deg]'" in str(error.value)

@@ -8,7 +8,7 @@ from mcap.reader import make_reader
 
 from orchestrator.cli import main
 from orchestrator.log.read_log import read_log
-from orchestrator.log.viewer_layouts import FOLDER, TITLES, layout
+from orchestrator.log.viewer_layouts import LAYOUT_FOLDER, TITLES, layout
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.parametrize("viewer", TITLES)
 def test_shipped_file_is_what_the_code_makes(viewer: Any) -> None:
-    assert json.loads((FOLDER / f"{viewer}.json").read_text()) == layout(viewer)
+    assert json.loads((LAYOUT_FOLDER / f"{viewer}.json").read_text()) == layout(viewer)
 
 
 @pytest.mark.parametrize("viewer", TITLES)

@@ -123,8 +123,8 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
 def test_a_neighbour_who_has_moved_moves_the_line_of_a_row_across_the_road() -> None:
     """The car, 4 m long and 1.7 m wide, stands 30 cm out of a slot of its length, and of 4.5 m with the mouth at 0."""
     row: dict[str, Any] = {
-        "mode": 6.0, "reason": "none", "within GB/T 41630, perpendicular": False, "kind": 1.0, "shifts": 3,
-        "duration": 40.0, "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.slot_margin": -0.3,
+        "mode": 6.0, "reason": "none", "within GB/T 41630, perpendicular": False, "kind": 1.0, "manoeuvres": 3,
+        "duration": 40.0, "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.outline_margin": -0.3,
         "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
         "vehicle.car.wheelbase": 2.5, "vehicle.car.front_overhang": 0.8, "vehicle.car.rear_overhang": 0.7,
         "vehicle.car.width": 1.7, "final.x": 0.0, "final.y": -3.0, "final.heading": 0.5 * math.pi,

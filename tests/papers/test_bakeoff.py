@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
-from controller_fmu.zhang2022.path import STEEPEST, PathStatus, plan, through
+from controller_fmu.zhang2022.path import MAX_PATH_HEADING, PathStatus, plan, through
 from modelkit.vocabulary import Pose
 from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
 from orchestrator.bakeoff.claim import study as claim
@@ -61,7 +61,9 @@ def smallest_peak(start: Pose, radius: float) -> float:
     widest = largest_radius(start.x, start.y)
     low = min(radius, widest)
     arcs = [arc_line_arc(start.x, start.y, low + (widest - low) * n / 2000) for n in range(2001)]
-    return min(through(start, arc).largest_curvature for arc in arcs if arc.line >= 0.0 and 0.0 < arc.angle < STEEPEST)
+    return min(
+        through(start, arc).largest_curvature for arc in arcs if arc.line >= 0.0 and 0.0 < arc.angle < MAX_PATH_HEADING
+    )
 
 
 def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there() -> None:

@@ -107,7 +107,7 @@ def test_figures_are_written(reproduction: Reproduction) -> None:
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_scenarios_end_as_they_say(name: str) -> None:
     driven = drive(name)
-    assert driven.summary.outcome == driven.scenario.expect
+    assert driven.summary.outcome == driven.scenario.expected_outcome
 
 
 @pytest.mark.parametrize(
@@ -125,6 +125,6 @@ def test_scenarios_end_as_they_say(name: str) -> None:
 )
 def test_faults_end_with_a_reason_and_a_stopped_car(name: str, reason: str) -> None:
     driven = drive(name)
-    assert driven.summary.outcome == driven.scenario.expect
+    assert driven.summary.outcome == driven.scenario.expected_outcome
     assert driven.summary.reason == reason
     assert driven.recording.signals["vehicle.speed"][-1] == 0.0

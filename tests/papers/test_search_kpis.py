@@ -34,7 +34,7 @@ def columns(**more: list[object]) -> dict[str, np.ndarray]:
         "slot_heading": [-0.01, math.nan, 0.3, math.nan],
         "kind_right": [1.0, math.nan, 0.0, math.nan],
         "parking_time": [20.0, 0.0, 0.0, 0.0],
-        "shifts": [2, 0, 0, 0],
+        "manoeuvres": [2, 0, 0, 0],
         "kind": ["parallel"] * 4,
         "speed": [5.0] * 4,
         "beside": [0.5] * 4,

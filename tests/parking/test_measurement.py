@@ -15,7 +15,7 @@ from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predi
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose, reading_status, sensor_pose
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes, count_missed_echoes, is_silent
 from modelkit.car import Car, SensorMount
-from modelkit.geometry import FAR, Point, cone_line
+from modelkit.geometry import NO_HIT, Point, cone_line
 from modelkit.vocabulary import Pose
 
 HALF = math.radians(30.0)
@@ -30,7 +30,7 @@ def test_predicted_range_is_that_of_the_exact_cone(ax: float, ay: float, bx: flo
     if max(math.hypot(ax - 0.3, ay + 0.2), math.hypot(bx - 0.3, by + 0.2)) < 0.01:
         return
     assert predicted.distance == pytest.approx(exact, abs=1e-9)
-    assert (predicted.origin == EchoOrigin.OUT_OF_VIEW) == (exact == FAR)
+    assert (predicted.origin == EchoOrigin.OUT_OF_VIEW) == (exact == NO_HIT)
 
 
 def test_origin_of_an_echo() -> None:

@@ -18,7 +18,7 @@ from orchestrator.report.overlay import write_overlay
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.replay import LARGEST_PAGE, replay_page
-from orchestrator.report.thinning import TOLERANCE, thin
+from orchestrator.report.thinning import RANGE_TOLERANCE, thin
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
@@ -107,11 +107,13 @@ def test_signals_in_the_page_are_those_of_the_run(replay: Any, case4: Any) -> No
             np.testing.assert_array_equal(kept[rows], values)
         else:
             error = np.abs(np.interp(recording.t, t, kept) - values).max()
-            assert error <= 1.01 * TOLERANCE * np.ptp(values) + 1e-5
+            assert error <= 1.01 * RANGE_TOLERANCE * np.ptp(values) + 1e-5
 
 
 def test_sixty_seconds_stay_under_one_megabyte_whatever_happens() -> None:
-    scenario = load_scenario("fault-driver-does-not-move", ["stop_time=60", "controller.limit.patience=100"])
+    scenario = load_scenario(
+        "fault-driver-does-not-move", ["stop_time=60", "controller.limit.driver_response_timeout=100"]
+    )
     ran = run_scenario(scenario)
     recording = ran.recording
     assert recording.t[-1] == 60.0
@@ -144,7 +146,7 @@ def test_thinning_keeps_steps_and_spikes() -> None:
     thinned = thin(t, [smooth], [mode], [4321], 1000)
     change = int(np.argmax(mode))
     assert {0, 2344, 2345, 2346, 4321, change - 1, change, 6000} <= set(thinned.rows.tolist())
-    assert thinned.deviation <= TOLERANCE
+    assert thinned.deviation <= RANGE_TOLERANCE
     assert len(thinned.rows) <= 1000
 
 

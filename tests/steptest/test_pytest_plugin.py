@@ -24,18 +24,18 @@ def test_fixtures_drive_the_system_and_each_part_alone(pytester: pytest.Pytester
         @pytest.mark.parametrize("body", ["kinematic", "single_track"])
         def test_parks(closed_loop, body):
             run = closed_loop("guo2015-case4", {"vehicle.body": body})
-            run.must_be("parked").must_meet("gbt41630")
+            run.assert_outcome("parked").assert_requirements("gbt41630")
 
         def test_steering(vehicle):
             wanted = {"step": {"at": 1.0, "to": 3.14}}
             run = vehicle({"steering_active": True, "steering_wheel_request": wanted}, stop_time=2.0)
             rises = {"rise_time": {"max": 0.3}, "to": 3.14, "at": 1.0}
-            run.must_meet({"id": "rises", "signal": "steering_wheel_angle", "response": rises})
+            run.assert_requirements({"id": "rises", "signal": "steering_wheel_angle", "response": rises})
             assert run["steering_wheel_angle"][-1] == pytest.approx(3.14)
 
         def test_takeover(controller):
             run = controller({"driver_takeover": {"step": {"at": 0.2, "to": True}}}, stop_time=1.0)
-            run.must_meet({"id": "ends", "signal": "phase", "eventually": {"equals": "TAKEOVER"}})
+            run.assert_requirements({"id": "ends", "signal": "phase", "eventually": {"equals": "TAKEOVER"}})
         """
     )
     run().assert_outcomes(passed=4)
@@ -45,10 +45,10 @@ def test_a_miss_says_signal_time_value_and_limit(pytester: pytest.Pytester, run:
     pytester.makepyfile(
         """
         def test_too_slow(closed_loop):
-            closed_loop("guo2015-case4").must_meet("own.yaml")
+            closed_loop("guo2015-case4").assert_requirements("own.yaml")
 
         def test_outcome(closed_loop):
-            closed_loop("guo2015-case2").must_be("parked")
+            closed_loop("guo2015-case2").assert_outcome("parked")
         """
     )
     pytester.makefile(".yaml", own="- {id: slow, signal: vehicle.speed, max_abs: 1 m/s, source: me}")

@@ -240,7 +240,7 @@ MODEL = Model(
 def test_scenarios_are_no_step_tests(write: Any, tmp_path: Path) -> None:
     assert is_step_test(str(write(["{id: a, signal: speed, always: {max: 1}}"])))
     scenario = tmp_path / "scenario.yaml"
-    scenario.write_text("base: guo2015-case4\n")
+    scenario.write_text("extends: guo2015-case4\n")
     assert not is_step_test(str(scenario))
     assert not is_step_test("guo2015-case4")
 

@@ -17,7 +17,7 @@ RUNS = {
         "n": 12,
         "vehicle.start.y": {"uniform": ["-10 cm", "10 cm"]},
         "vehicle.start.heading": {"normal": [0, "1 deg"]},
-        "vehicle.driver.obeys_slow_down": {"choice": [True, False]},
+        "vehicle.driver.complies_with_slow_down": {"choice": [True, False]},
         "stop_time": {"uniform": [8.0, 60.0]},
     },
 }

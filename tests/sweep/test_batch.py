@@ -56,7 +56,7 @@ def assert_same(job: Any, chunk: Any, rows: Any, number: Any, kind: str = "nativ
     numbers = {name: float(values[number]) for name, values in verdict.numbers.items()}
     for name, value in summary.final.model_dump().items():
         assert np.array([numbers[f"final.{name}"]]).tobytes() == np.array([value]).tobytes(), name
-    assert (numbers["duration"], numbers["shifts"]) == (summary.duration, summary.shifts)
+    assert (numbers["duration"], numbers["manoeuvres"]) == (summary.duration, summary.manoeuvres)
     assert numbers["max_speed"] == summary.max_speed
 
 
@@ -86,7 +86,7 @@ def test_rows_do_not_depend_on_their_neighbours(bind: Any) -> None:
 @pytest.mark.parametrize("every", [{"controller": 5}, {"vehicle": 3}, {"vehicle": 2, "controller": 4}])
 def test_multi_rate_is_the_masters(bind: Any, every: Any) -> None:
     _, _, job, chunk = bind(
-        set={f"every.{name}": count for name, count in every.items()}, runs={"grid": {"step": [0.005, 0.01]}}
+        set={f"decimation.{name}": count for name, count in every.items()}, runs={"grid": {"step": [0.005, 0.01]}}
     )
     rows = run_batch(job, chunk)
     for number in range(len(rows)):
@@ -95,7 +95,7 @@ def test_multi_rate_is_the_masters(bind: Any, every: Any) -> None:
 
 @pytest.mark.parametrize("every", [{}, {"controller": 5}, {"vehicle": 3, "controller": 4}])
 def test_a_stop_time_between_two_steps_is_the_masters(bind: Any, every: Any) -> None:
-    said = {f"every.{name}": count for name, count in every.items()}
+    said = {f"decimation.{name}": count for name, count in every.items()}
     _, _, job, chunk = bind(set={**said, "step": 0.007}, runs={"grid": {"stop_time": [1.0, 1.001, 1.0003]}})
     rows = run_batch(job, chunk)
     for number in range(len(rows)):
@@ -112,7 +112,7 @@ def test_shipped_scenarios(bind: Any, name: str) -> None:
 
 
 def test_limits_on_signals_and_numbers(bind: Any, tmp_path: Path, some: Any) -> None:
-    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {LIMITS}\n")
+    (tmp_path / "a.yaml").write_text(f"extends: guo2015-case4\nrequirements: {LIMITS}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"))
     assert why_not_compiled(scenario) == ""
     rows = run_batch(job, chunk)
@@ -121,7 +121,7 @@ def test_limits_on_signals_and_numbers(bind: Any, tmp_path: Path, some: Any) -> 
 
 
 def test_limits_with_a_window_are_judged_from_recordings(bind: Any, tmp_path: Path) -> None:
-    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {WINDOWED}\n")
+    (tmp_path / "a.yaml").write_text(f"extends: guo2015-case4\nrequirements: {WINDOWED}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {"controller.system": [0, 1]}})
     assert "'late' needs the whole run" in why_not_compiled(scenario)
     rows = run_recorded(job, chunk, "none", None)
@@ -131,12 +131,12 @@ def test_limits_with_a_window_are_judged_from_recordings(bind: Any, tmp_path: Pa
 
 FAULTS = [
     {"signal": "vehicle.odometry", "kind": "noise", "sigma": 0.01, "start": 1.0, "stop": 9.0},
-    {"signal": "vehicle.measured_speed", "kind": "drop", "probability": 0.4, "stop": 20.0},
+    {"signal": "vehicle.measured_speed", "kind": "dropout", "probability": 0.4, "stop": 20.0},
     {"signal": "controller.steering_wheel_request", "kind": "delay", "delay": 0.25, "start": 2.0},
-    {"signal": "vehicle.odometry", "kind": "freeze", "start": 6.0, "stop": 6.3},
+    {"signal": "vehicle.odometry", "kind": "stuck_at_last", "start": 6.0, "stop": 6.3},
     {"signal": "controller.prompt", "kind": "override", "value": "STOP", "start": 12.0, "stop": 12.7},
-    {"signal": "vehicle.person.brake", "kind": "override", "value": 0.3, "start": 3.0, "stop": 3.05},
-    {"signal": "controller.steering_active", "kind": "drop", "probability": 0.2},
+    {"signal": "vehicle.manual.brake", "kind": "override", "value": 0.3, "start": 3.0, "stop": 3.05},
+    {"signal": "controller.steering_active", "kind": "dropout", "probability": 0.2},
 ]
 VARIED = {
     "faults[1].sigma": {"uniform": [0.0, 0.03]},
@@ -145,14 +145,14 @@ VARIED = {
     "faults[4].start": {"uniform": [0.0, 10.0]},
     "faults[4].stop": {"uniform": [10.1, 20.0]},
     "faults[5].start": {"uniform": [0.0, 12.0]},
-    "every.controller": {"choice": [1, 2, 3]},
-    "every.vehicle": {"choice": [1, 2]},
+    "decimation.controller": {"choice": [1, 2, 3]},
+    "decimation.vehicle": {"choice": [1, 2]},
 }
 
 
 def test_faults_are_the_python_masters(bind: Any, tmp_path: Path, some: Any) -> None:
     """All kinds, of outputs and inputs, of reals, whole numbers and truths, at any time, models due at other times."""
-    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nfaults: {json.dumps(FAULTS)}\n")
+    (tmp_path / "a.yaml").write_text(f"extends: guo2015-case4\nfaults: {json.dumps(FAULTS)}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"monte_carlo": {"n": 200, **VARIED}})
     assert why_not_compiled(scenario) == ""
     rows = run_batch(job, chunk)
@@ -173,7 +173,7 @@ def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
     """One that the search needs, and one that the way in does without."""
     nan = {"kind": "override", "value": "nan", "start": 4.0}
     faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (9, 8)]
-    (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps(faults)}\n")
+    (tmp_path / "a.yaml").write_text(f"extends: apa-parallel\nfaults: {json.dumps(faults)}\n")
     runs = {"grid": {"faults[1].start": [4.0, 1e6], "faults[2].start": [18.0, 1e6]}}
     _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs=runs)
     rows = run_batch(job, chunk)
@@ -237,12 +237,12 @@ def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind: Any
         assert scenario.target.x == -7.608
     along = verdict.numbers["final.longitudinal_error"]
     assert set((along[1::2] - along[::2]).round(1).tolist()) == {0.2}
-    assert len(set(verdict.numbers["final.slot_margin"].round(2).tolist())) > 1
+    assert len(set(verdict.numbers["final.outline_margin"].round(2).tolist())) > 1
 
 
 def test_the_scene_of_a_study_moves_the_kerb(bind: Any, tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(
-        "base: guo2015-case4\nscene: {kerbs: [[-20, -4.1, 5, -4.1, 0.1]]}\nlimits: [gbt41630]\n"
+        "extends: guo2015-case4\nscene: {kerbs: [[-20, -4.1, 5, -4.1, 0.1]]}\nrequirements: [gbt41630]\n"
     )
     keys = "scene.kerbs[1].y1, scene.kerbs[1].y2"
     _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {keys: [-4.05, -4.1, -4.4, -9.0]}})
@@ -288,7 +288,7 @@ def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, som
     _, _, job, chunk = bind()
     parking = When("controller.phase", (2, 3))
     hows: tuple[Any, ...] = ("last", "largest", "greatest", "smallest", "travel", "first")
-    signals = ("vehicle.speed", "vehicle.clearance", "controller.shifts", "vehicle.prompt")
+    signals = ("vehicle.speed", "vehicle.clearance", "controller.manoeuvres", "vehicle.prompt")
     measures = [Measure(how, signal, when) for how in hows for signal in signals for when in (parking, None)]
     never = Measure("last", "vehicle.speed", When("controller.phase", (63,)))
     job = job._replace(measures=[*job.measures, *measures, never])

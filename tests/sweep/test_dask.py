@@ -80,7 +80,7 @@ def test_a_scheduler_that_does_not_answer(
 ) -> None:
     from orchestrator.sweep import dask_engine
 
-    monkeypatch.setattr(dask_engine, "CONNECT", 0.3)
+    monkeypatch.setattr(dask_engine, "CONNECT_TIMEOUT", 0.3)
     code = main(["sweep", "guo2015-trial", "--out", str(tmp_path), "--no-page", "--dask", "tcp://127.0.0.1:9"])
     assert code == 2
     assert "no scheduler answers" in capsys.readouterr().err

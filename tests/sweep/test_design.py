@@ -65,8 +65,10 @@ def test_normal_samples_stay_in_the_range_of_the_parameter(bind: Any) -> None:
 
 
 def test_choices_are_about_equally_frequent(bind: Any) -> None:
-    made = design(bind, latin_hypercube={"n": 300, "vehicle.driver.obeys_stop": {"choice": [True, False, True]}})
-    assert column(made, "vehicle.driver.obeys_stop").sum() == 200
+    made = design(
+        bind, latin_hypercube={"n": 300, "vehicle.driver.complies_with_stop": {"choice": [True, False, True]}}
+    )
+    assert column(made, "vehicle.driver.complies_with_stop").sum() == 200
 
 
 def test_both_kinds_of_samples_are_joined_side_by_side(bind: Any) -> None:
@@ -84,16 +86,16 @@ def test_the_same_study_gives_the_same_design_and_another_seed_another(bind: Any
 
 
 def test_scenario_fields_and_faults_can_be_varied(bind: Any) -> None:
-    fault = {"signal": "vehicle.odometry", "kind": "freeze", "start": 1.0}
+    fault = {"signal": "vehicle.odometry", "kind": "stuck_at_last", "start": 1.0}
     scenario, made, job, chunk = bind(
         scenario="fault-pose-frozen",
-        runs={"grid": {"faults[1].start": [2.0], "stop_time": ["12 s"], "every.vehicle": [2]}},
+        runs={"grid": {"faults[1].start": [2.0], "stop_time": ["12 s"], "decimation.vehicle": [2]}},
     )
     assert fault["kind"] == scenario.faults[0].kind
     from orchestrator.sweep.job import chunk_scenario
 
     one = chunk_scenario(job, chunk, 0)
-    assert (one.faults[0].start, one.stop_time, one.every) == (2.0, 12.0, {"vehicle": 2})
+    assert (one.faults[0].start, one.stop_time, one.decimation) == (2.0, 12.0, {"vehicle": 2})
     assert made.values.tolist() == [[2.0, 12.0, 2.0]]
 
 
@@ -108,7 +110,7 @@ def test_scenario_fields_and_faults_can_be_varied(bind: Any) -> None:
         ({"monte_carlo": {"n": 3, "vehicle.car.wheelbase": {"uniform": [-3, 3]}}}, "out of range"),
         ({"monte_carlo": {"n": 3, "vehicle.start.x": {"uniform": [3, -3]}}}, "lower end first"),
         ({"monte_carlo": {"n": 3, "vehicle.start.x": {"normal": [3, 0]}}}, "more than 0"),
-        ({"monte_carlo": {"n": 3, "vehicle.driver.obeys_stop": {"uniform": [0, 1]}}}, "expected choice"),
+        ({"monte_carlo": {"n": 3, "vehicle.driver.complies_with_stop": {"uniform": [0, 1]}}}, "expected choice"),
         ({"grid": {"faults[1].start": [1.0]}}, "has 0 faults"),
         ({"grid": {"speed": [1.0]}}, "unknown"),
     ],

@@ -49,7 +49,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A finished study with its page and the replay of its worst run."""
     path = tmp_path_factory.mktemp("page")
     (path / "trial.yaml").write_text(STUDY)
-    picture = ["--picture", str(path / "map.png")]
+    picture = ["--figure", str(path / "map.png")]
     assert main(["sweep", str(path / "trial.yaml"), "--out", str(path), "--replays", "1", *picture]) == 0
     return path
 
@@ -231,7 +231,7 @@ def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
     row = table.row(number)
     found = deciding_limit(table, number)
     violations = {}
-    for item in Scenario(**table.job.scenario).limits:
+    for item in Scenario(**table.job.scenario).requirements:
         if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
             beyond = item.limit - row[item.signal] if item.condition == "min" else abs(row[item.signal]) - item.limit
             violations[f"{item.id}: {readable(row[item.signal], 'm')} ({required_text(item)})"] = beyond / (

@@ -65,13 +65,13 @@ def wait_for_parts(process: Any, out: Any, count: Any) -> None:
 
 
 def test_a_killed_study_goes_on_to_the_same_bytes(study: Any, whole: Any, tmp_path: Path) -> None:
-    process = begun(study, tmp_path, "--workers", "1")
+    process = begun(study, tmp_path, "--jobs", "1")
     wait_for_parts(process, tmp_path, 3)
     os.kill(process.pid, signal.SIGKILL)
     process.communicate()
     kept = {path: path.stat().st_mtime_ns for path in parts(tmp_path)}
     assert 3 <= len(kept) < COUNT / CHUNK
-    again = begun(study, tmp_path, "--workers", "1", "--resume")
+    again = begun(study, tmp_path, "--jobs", "1", "--resume")
     wait_for_parts(again, tmp_path, len(kept) + 2)
     os.kill(again.pid, signal.SIGKILL)
     again.communicate()
@@ -81,7 +81,7 @@ def test_a_killed_study_goes_on_to_the_same_bytes(study: Any, whole: Any, tmp_pa
 
 
 def test_an_interrupted_study_keeps_what_is_done(study: Any, whole: Any, tmp_path: Path) -> None:
-    process = begun(study, tmp_path, "--workers", "1")
+    process = begun(study, tmp_path, "--jobs", "1")
     wait_for_parts(process, tmp_path, 2)
     process.send_signal(signal.SIGINT)
     out, error = process.communicate()
@@ -96,7 +96,7 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
 ) -> None:
     (tmp_path / "parts").mkdir()
     assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 0
-    process = begun(study, tmp_path, "--workers", "1")
+    process = begun(study, tmp_path, "--jobs", "1")
     wait_for_parts(process, tmp_path, 1)
     process.kill()
     process.communicate()

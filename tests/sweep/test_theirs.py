@@ -17,7 +17,7 @@ from orchestrator.text.errors import BadInput
 from tests.orchestrator import c_fmus
 
 STUDY = """scenario: their.yaml
-set: {stop_time: 6, expect: not_parked}
+set: {stop_time: 6, expected_outcome: not_parked}
 runs:
   grid:
     controller.TurnTime: [1.5, 2 s]
@@ -42,7 +42,7 @@ def test_a_study_varies_and_keeps_what_is_theirs(
     desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(desk)
-    words = ["sweep", "study.yaml", "--fmus", "none", "--workers", "1", "--out", str(tmp_path), "--replays", "0"]
+    words = ["sweep", "study.yaml", "--fmus", "none", "--jobs", "1", "--out", str(tmp_path), "--replays", "0"]
     assert main([*words, "--no-page"]) == 0
     table = read_table(tmp_path / "study.parquet")
     assert table["controller.TurnTime"].tolist() == [1.5, 1.5, 2.0, 2.0]
@@ -63,7 +63,7 @@ def test_modes_of_their_own_decide_in_a_table_too(desk: Path) -> None:
         text[: text.index("    mode:")]
         + "    mode: {from: controller.State, states: {idle: 1, first: 2, next: 3, there: 4}}\n"
     )
-    (desk / "own.yaml").write_text(f"{own}ending: {{done: [there], failed: [next]}}\n", encoding="utf-8")
+    (desk / "own.yaml").write_text(f"{own}stop_condition: {{succeeded: [there], failed: [next]}}\n", encoding="utf-8")
     (desk / "own-study.yaml").write_text(STUDY.replace("their.yaml", "own.yaml"), encoding="utf-8")
     study = read_study(str(desk / "own-study.yaml"), {"stop_time": "3"})
     job = make_job(study)
@@ -76,8 +76,8 @@ def test_a_hunt_says_that_it_takes_no_system(
     desk: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(desk)
-    assert main(["hunt", "study.yaml", "--budget", "50", "--out", str(tmp_path)]) == 2
-    assert "system: a hunt runs our models" in capsys.readouterr().err
+    assert main(["falsify", "study.yaml", "--budget", "50", "--out", str(tmp_path)]) == 2
+    assert "system: a falsification runs our models" in capsys.readouterr().err
 
 
 def test_names_that_theirs_has_not_are_answered(desk: Path, monkeypatch: pytest.MonkeyPatch) -> None:

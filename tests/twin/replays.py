@@ -25,7 +25,7 @@ def played(target: Any, scenario: Any, recording: Any, name: Any) -> Any:
     model = MODELS[name]
     inputs, outputs = ([f"{name}.{item.name}" for item in variables(cls)] for cls in (model.inputs, model.outputs))
     given = np.column_stack([recording.signals[key] for key in inputs])
-    every = scenario.every.get(name, 1)
+    every = scenario.decimation.get(name, 1)
     params = np.array(flatten(with_values(model.params, dict(getattr(scenario, name)))), dtype=float)
     rows = target(params, np.ascontiguousarray(given[::every]), scenario.step_ns * every)
     return dict(zip(outputs, np.repeat(rows, every, axis=0)[: len(given)].T, strict=True))

@@ -43,7 +43,7 @@ def test_whole_run(fmus: Any, loops: Any, kind: str) -> None:
     assert found.end == expected.end
     assert differing(found.recording, expected.recording) == {}
     assert sum(loops) == len(found.recording.t_ns) == 1201
-    assert set(loops[:-1]) == {compiled_master.BLOCK}
+    assert set(loops[:-1]) == {compiled_master.EXCHANGES_PER_CALL}
 
 
 def test_an_ending_in_mid_block(fmus: Any, loops: Any) -> None:

@@ -141,8 +141,8 @@ def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length(driver_change
     for number, dt_ns in enumerate(ODD):
         if driver_changes:
             pedals = {"accelerator": 0.1 * (number % 3), "brake": 0.2 * (number % 2)}
-            person = inputs.vehicle.person._replace(drives=True, lever=Gear.DRIVE, **pedals)
-            inputs = inputs._replace(vehicle=inputs.vehicle._replace(person=person))
+            person = inputs.vehicle.manual._replace(active=True, lever=Gear.DRIVE, **pedals)
+            inputs = inputs._replace(vehicle=inputs.vehicle._replace(manual=person))
             given = np.array(flatten(inputs), dtype=float)
         assert same(told, np.array(flatten(outputs), dtype=float))
         state, outputs = model.step(state, inputs, params, dt_ns)
@@ -192,7 +192,7 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(
     assert CASE.target is not None
     assert float(known["controller.target.x"].start) == CASE.target.x
     inputs = [v.name for v in description.modelVariables if v.causality == "input"]
-    assert {name.rpartition(".")[0] for name in inputs} == {"vehicle.person"}, "what neither feeds"
+    assert {name.rpartition(".")[0] for name in inputs} == {"vehicle.manual"}, "what neither feeds"
     fmpy.extract(str(containers[2]), str(tmp_path))
     assert [path.name for path in (tmp_path / "binaries").iterdir()] == [this_platform()]
     (table,) = tmp_path.glob("extra/*/*_out.csv")
@@ -226,7 +226,7 @@ def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
     ports: dict[str, list[str]] = {}
     for item in shown_variables(model):
         ports.setdefault(item.causality, []).append(item.name)
-    own = [name for name in ports["input"] if not name.startswith("vehicle.person.")]
+    own = [name for name in ports["input"] if not name.startswith("vehicle.manual.")]
     assert own == ["vehicle.prompt", "controller.driver_takeover"]
     assert ports["output"] == ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]
     assert {name.split(".")[1] for name in ports["parameter"]} == {"driver"}

@@ -27,10 +27,10 @@ def driven(folder: Path, start: tuple[float, float, float], target: tuple[float,
         "car": "tpcap",
         "stop_time": 200,
         "target": poses[1],
-        "polygons": polygons,
+        "obstacles": polygons,
         "vehicle": {"body": "kinematic", "start": poses[0]},
         "controller": {"system": "valet"},
-        "limits": [],
+        "requirements": [],
     }
     file = folder / "little-room.yaml"
     file.write_text(yaml.safe_dump(values))

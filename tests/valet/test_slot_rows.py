@@ -13,7 +13,7 @@ from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.grid.found_scenarios import out_of
 from orchestrator.grid.found_slots import cases as slots
 from orchestrator.grid.slot_rows import cases, scenario_of, study
-from orchestrator.scenario.polygons import box_corners, map_of
+from orchestrator.scenario.obstacle_map import box_corners, map_of
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.in_memory import columns_in_memory
 from orchestrator.verdict.summary import summarize

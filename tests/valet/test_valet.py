@@ -9,7 +9,7 @@ import pytest
 from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
-from controller_fmu.common.told import SlotKind, ToldSlot
+from controller_fmu.common.external_slot import ExternalSlot, SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.task import Corner
@@ -120,7 +120,7 @@ def test_parameters_without_sense_are_refused() -> None:
     [
         ({"measured_speed": math.nan}, Reason.BAD_INPUT),
         ({"vehicle_fault": 1}, Reason.VEHICLE_FAULT),
-        ({"told": ToldSlot(SlotKind.TAIL_IN, ax=math.nan)}, Reason.BAD_INPUT),
+        ({"external_slot": ExternalSlot(SlotKind.TAIL_IN, ax=math.nan)}, Reason.BAD_INPUT),
     ],
 )
 def test_a_fault_ends_it_with_its_reason(changed: Any, reason: Any) -> None:

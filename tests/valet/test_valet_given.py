@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.common.told import SlotKind, ToldSlot, depth_of
+from controller_fmu.common.external_slot import ExternalSlot, SlotKind, depth_of
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, GapLayout
@@ -29,7 +29,7 @@ def across(
     c, s = math.cos(h), math.sin(h)
     a, b = (0.5 * width * s, -0.5 * width * c), (-0.5 * width * s, 0.5 * width * c)
     a, b = (b, a) if swapped else (a, b)
-    return ToldSlot(kind, *a, *b, b[0] + depth * c, b[1] + depth * s, a[0] + depth * c, a[1] + depth * s, heading=h)
+    return ExternalSlot(kind, *a, *b, b[0] + depth * c, b[1] + depth * s, a[0] + depth * c, a[1] + depth * s, heading=h)
 
 
 @pytest.mark.parametrize("swapped", [False, True])
@@ -53,7 +53,7 @@ def test_without_c_and_d_the_depth_is_not_told_and_the_car_stands_flush() -> Non
     goal = goal_in(gap_told(told, PARAMS), 0.0, SlotWish.NOSE_IN, PARAMS)
     assert goal.y - PARAMS.car.rear_overhang * math.sin(goal.heading) == pytest.approx(0.0, abs=1e-9)
     assert as_parameter(told, GivenSlot(depth=6.0)).depth == 6.0
-    assert as_parameter(ToldSlot(), GivenSlot(SlotKind.PARALLEL, ax=3.0)).ax == 3.0
+    assert as_parameter(ExternalSlot(), GivenSlot(SlotKind.PARALLEL, ax=3.0)).ax == 3.0
 
 
 @pytest.mark.parametrize(

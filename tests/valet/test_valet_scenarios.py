@@ -41,7 +41,7 @@ def driven(name: Any, files: Any, sets: Any = ()) -> Any:
 @pytest.mark.parametrize("name", [name for name in scenario_names() if name.startswith("valet")])
 def test_a_shipped_scenario_ends_as_it_should(name: Any, files: Any) -> None:
     scenario, recording, summary = driven(name, files)
-    assert summary.outcome == scenario.expect
+    assert summary.outcome == scenario.expected_outcome
     assert recording.signals["vehicle.clearance"].min() > 0.1
     if name in REASONS:
         assert REASONS[name] in summary.reason

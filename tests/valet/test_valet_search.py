@@ -27,7 +27,7 @@ from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.polygons import box_corners
+from orchestrator.scenario.obstacle_map import box_corners
 from orchestrator.session.session import run_scenario
 from tests.valet.looks import look
 from vehicle_fmu.scene import Obstacle, SceneParams

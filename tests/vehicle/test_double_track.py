@@ -78,7 +78,7 @@ def test_tends_to_the_kinematic_car_as_speed_tends_to_zero(speed: float, angle: 
 @pytest.mark.parametrize("heading", [0.0, 0.7, math.pi / 2])
 @pytest.mark.parametrize("angle", [0.0, 0.4])
 def test_brake_holds_on_a_10_percent_slope_for_10_minutes(heading: float, angle: float) -> None:
-    road = RoadParams(slope=0.1)
+    road = RoadParams(grade=0.1)
     start = Pose(1.0, 2.0, heading)
     state = resting(start, angle, Build(STANCE, CHASSIS, road), PARAMS)
     for n in range(120000):

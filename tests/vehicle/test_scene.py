@@ -8,7 +8,7 @@ import shapely
 from shapely import affinity
 
 from modelkit.car import SENSOR_MOUNTS, Car, CarUltrasonic
-from modelkit.geometry import FAR
+from modelkit.geometry import NO_HIT
 from modelkit.vocabulary import Pose
 from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon, wheel_speed_reading
 from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
@@ -62,7 +62,7 @@ def test_clearance_is_the_distance_to_the_nearest_thing() -> None:
 
 
 def test_an_empty_scene_is_clear() -> None:
-    assert clearance(Pose(), Car(), SceneParams(), 0.08, 0) == FAR
+    assert clearance(Pose(), Car(), SceneParams(), 0.08, 0) == NO_HIT
     assert first_readings(Pose(), SceneParams(), EXACT, CLEAN).readings == (5.0,) * 12
 
 
@@ -79,7 +79,12 @@ def test_things_appear_and_disappear() -> None:
     walker = Obstacle(5.0, 0.0, 0.0, 0.4, 0.4, 2.0, 3.0)
     scene = SceneParams((walker, *(Obstacle(),) * 15))
     seen = [clearance(Pose(), Car(), scene, 0.08, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
-    assert seen == [FAR, pytest.approx(5.0 - 0.2 - 3.205), pytest.approx(5.0 - 0.2 - 3.205), FAR]
+    assert seen == [
+        NO_HIT,
+        pytest.approx(5.0 - 0.2 - 3.205),
+        pytest.approx(5.0 - 0.2 - 3.205),
+        NO_HIT,
+    ]
 
 
 def test_things_move_and_are_heard_where_they_are() -> None:

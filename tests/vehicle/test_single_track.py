@@ -14,7 +14,7 @@ from modelkit.maths import clamp, sign
 from modelkit.vocabulary import Pose
 from tests.vehicle.cars import CARS, single_track_car
 from vehicle_fmu.bodies.chassis import (
-    GRAVITY,
+    GRAVITY_ACCELERATION,
     Build,
     ChassisParams,
     Gravity,
@@ -71,19 +71,19 @@ def steady_rates(
     ``force`` [N] pushes along; ``accel`` [m/s2] moves load. beta' of ST is the second over v_x, minus r.
     """
     stance, chassis, _ = build
-    loads = axle_loads(accel, GRAVITY, stance, p, chassis)
+    loads = axle_loads(accel, GRAVITY_ACCELERATION, stance, p, chassis)
     stiffness = axle_stiffness(loads, stance, p, chassis)
     wheelbase, b = stance
     front = front_slip(motion, angle, wheelbase, b, p.small_angles)
     rear = rear_slip(motion, b)
-    rolling = chassis.rolling_resistance * chassis.mass * GRAVITY * sign(motion.speed_x)
+    rolling = chassis.rolling_resistance * chassis.mass * GRAVITY_ACCELERATION * sign(motion.speed_x)
     forces = AxleForces(
         steady_force(front, stiffness.front, p.friction * loads.front),
         steady_force(rear, stiffness.rear, p.friction * loads.rear),
         force - rolling,
     )
     total = wrench(forces, angle, stance, p.small_angles)
-    return accelerations(motion, total, Gravity(0.0, 0.0, GRAVITY), chassis)
+    return accelerations(motion, total, Gravity(0.0, 0.0, GRAVITY_ACCELERATION), chassis)
 
 
 def rates(car: Any, speed: float, beta: float, yaw_rate: float, angle: float, accel: float) -> tuple[float, ...]:
@@ -167,7 +167,7 @@ def test_paper_3_dof_car_has_no_load_transfer() -> None:
 
 
 def test_brake_holds_on_a_slope_and_rolling_resistance_alone_does_not() -> None:
-    road = RoadParams(slope=0.1)
+    road = RoadParams(grade=0.1)
     for brake, moves in ((6000.0, False), (0.0, True)):
         state = SingleTrackState()
         for _ in range(4000):

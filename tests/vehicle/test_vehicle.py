@@ -134,7 +134,7 @@ def test_wheel_spins_up_on_ice_only_without_traction() -> None:
 def test_driver_errors() -> None:
     fast = drive(params(driver__speed_error=0.2), prompted(Prompt.FORWARD), 3.0)[1].speed
     assert fast == pytest.approx(0.6)
-    car = params(driver__wobble=0.1, driver__wobble_period=2.0)
+    car = params(driver__speed_oscillation_amplitude=0.1, driver__speed_oscillation_period=2.0)
     state, _ = drive(car, prompted(Prompt.FORWARD), 3.0)
     speeds = []
     for _ in range(200):
@@ -148,13 +148,19 @@ def test_driver_brakes_and_grabs_the_wheel() -> None:
     assert drive(car, prompted(Prompt.FORWARD), 1.9)[1].brake_pedal == 0.0
     out = drive(car, prompted(Prompt.FORWARD), 4.0)[1]
     assert (out.speed, out.brake_pedal, out.driver_takeover) == (0.0, 1.0, False)
-    out = drive(params(driver__grab_time=1.0, driver__grab_angle=-2.0), prompted(Prompt.FORWARD, 5.0), 3.0)[1]
+    out = drive(
+        params(driver__steering_override_time=1.0, driver__steering_override_angle=-2.0),
+        prompted(Prompt.FORWARD, 5.0),
+        3.0,
+    )[1]
     assert out.steering_wheel_angle == pytest.approx(-2.0)
 
 
 @pytest.mark.parametrize("body", BODIES)
 def test_a_stuck_wheel_stays_where_it_was_whoever_turns_it(body: int) -> None:
-    car = params(body=body, steering__stuck_time=1.0, driver__grab_time=3.0, driver__grab_angle=-1.0)
+    car = params(
+        body=body, steering__fault_time=1.0, driver__steering_override_time=3.0, driver__steering_override_angle=-1.0
+    )
     state, before = drive(car, prompted(Prompt.FORWARD, 1.0 + 9.0), 1.0)
     assert before.steering_wheel_angle > 9.0
     state, out = drive(car, prompted(Prompt.FORWARD, -5.0), 1.0, state)
@@ -179,11 +185,11 @@ def test_apa_switch_and_confirmation() -> None:
 
 
 def test_odometry_drifts_as_the_closed_form_says() -> None:
-    car = params(body=2, odometry__perfect=False, odometry__radius_error=0.01, drive__shift_time=0.0)
+    car = params(body=2, odometry__ideal=False, odometry__radius_error=0.01, drive__shift_time=0.0)
     out = drive(car, prompted(Prompt.FORWARD), 10.0)[1]
     assert out.odometry.x == pytest.approx(1.01 * out.pose.x, rel=2e-3)
     assert out.measured_speed == pytest.approx(1.01 * out.speed, rel=2e-3)
-    car = params(odometry__perfect=False, odometry__steering_offset=0.004)
+    car = params(odometry__ideal=False, odometry__steering_offset=0.004)
     out = drive(car, prompted(Prompt.FORWARD), 10.0)[1]
     assert out.odometry.heading == pytest.approx(out.distance * math.tan(0.004) / 2.405, rel=1e-9)
 
@@ -224,7 +230,7 @@ BAD = [
     ("car.ultrasonic.cycle", 0.0),
     ("car.ultrasonic.mounts[2].yaw", math.inf),
     ("body_step", 0.0),
-    ("road.slope", math.nan),
+    ("road.grade", math.nan),
 ]
 
 
@@ -255,7 +261,7 @@ def test_parameters_without_meaning_give_a_status(name: str, value: float) -> No
     st.floats(0.0, 1.0),
 )
 def test_no_nan_for_any_input_in_range(body: int, commands: Any, slope: float, grip: float) -> None:
-    car = params(body=body, road__slope=slope, odometry__perfect=False, steering__lag=0.1, **{"road__grip[2]": grip})
+    car = params(body=body, road__grade=slope, odometry__ideal=False, steering__lag=0.1, **{"road__grip[2]": grip})
     state, out = MODEL.initialize(car)
     for wheel, prompt, advised, control, speed in commands:
         inputs = VehicleInput(wheel, True, prompt, advised, control, speed, False, 0.0, False)

@@ -9,7 +9,7 @@ from vehicle_fmu.bodies.single_track import SingleTrackState, step_single_track
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, VehicleParams
 
-STILL = 1e-3
+SHOWN_STANDSTILL_SPEED = 1e-3
 """Speed [m/s] below which a car that rocks on its tyres is told to stand."""
 
 
@@ -58,4 +58,4 @@ def wheel_speed(state: BodyState, body: int, radius: float) -> float:
 
 def shown_speed(speed: float) -> float:
     """Return ``speed`` [m/s], zero while the car only rocks on its tyres."""
-    return 0.0 if abs(speed) < STILL else speed
+    return 0.0 if abs(speed) < SHOWN_STANDSTILL_SPEED else speed

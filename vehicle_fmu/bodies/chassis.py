@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Role, Signal
 from modelkit.vocabulary import Pose
 
-GRAVITY = 9.81
+GRAVITY_ACCELERATION = 9.81
 CHOSEN = "chosen, usual for a small car"
 
 
@@ -37,8 +37,10 @@ class ChassisParams(NamedTuple):
 class RoadParams(NamedTuple):
     """The road plane and its grip under each wheel."""
 
-    slope: Annotated[float, Signal("1", "grade along the x axis of the world (rise over run)", -1.0, 1.0)] = 0.0
-    bank: Annotated[float, Signal("1", "cross slope along the y axis of the world (rise over run)", -1.0, 1.0)] = 0.0
+    grade: Annotated[float, Signal("1", "grade along the x axis of the world (rise over run)", -1.0, 1.0)] = 0.0
+    cross_slope: Annotated[
+        float, Signal("1", "cross slope along the y axis of the world (rise over run)", -1.0, 1.0)
+    ] = 0.0
     grip: tuple[
         Annotated[
             float,
@@ -93,10 +95,10 @@ class Gravity(NamedTuple):
 
 
 def gravity_in_car(heading: float, road: RoadParams) -> Gravity:
-    """Return gravity [m/s2] seen by a car of this heading on the plane z = slope x + bank y."""
-    normal = GRAVITY / math.sqrt(1.0 + road.slope * road.slope + road.bank * road.bank)
-    east = -normal * road.slope
-    north = -normal * road.bank
+    """Return gravity [m/s2] seen by a car of this heading on the plane z = grade x + cross_slope y."""
+    normal = GRAVITY_ACCELERATION / math.sqrt(1.0 + road.grade * road.grade + road.cross_slope * road.cross_slope)
+    east = -normal * road.grade
+    north = -normal * road.cross_slope
     cos = math.cos(heading)
     sin = math.sin(heading)
     return Gravity(east * cos + north * sin, north * cos - east * sin, normal)

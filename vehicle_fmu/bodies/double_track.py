@@ -1,7 +1,7 @@
 """The car on four wheels: planar motion, four spins, load transfer, Magic Formula tyres.
 
 State: pose of the rear axle, v_x, v_y at the centre of gravity, yaw rate; per wheel its spin
-and two carcass deflections; the accelerations its springs have felt. Road slope and bank by
+and two carcass deflections; the accelerations its springs have felt. Road grade and cross slope by
 gravity in the road plane, friction per wheel. One step is semi-implicit: wheels by the old
 motion, then the motion by their forces; stable at rest, in reverse and at speed.
 

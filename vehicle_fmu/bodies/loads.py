@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.maths import clamp
 from modelkit.signal import Signal
-from vehicle_fmu.bodies.chassis import CHOSEN, GRAVITY, ChassisParams, Stance
+from vehicle_fmu.bodies.chassis import CHOSEN, GRAVITY_ACCELERATION, ChassisParams, Stance
 
 
 class RollParams(NamedTuple):
@@ -64,7 +64,7 @@ def wheel_loads(
     sprung = weight - normal * (roll.unsprung_front + roll.unsprung_rear)
     front = clamp(sprung * stance.cg_to_rear / wheelbase + normal * roll.unsprung_front - pitch, 0.0, weight)
     rear = weight - front
-    stiffness = max(1.0, roll.stiffness_front + roll.stiffness_rear - p.mass * GRAVITY * roll.arm)
+    stiffness = max(1.0, roll.stiffness_front + roll.stiffness_rear - p.mass * GRAVITY_ACCELERATION * roll.arm)
     angle = clamp(p.mass * felt.y * roll.arm / stiffness, -0.5, 0.5)
     direct = p.mass * felt.y * (p.cg_height - roll.arm) / wheelbase
     shift_front = (roll.stiffness_front * angle + direct * stance.cg_to_rear) / tracks[0]

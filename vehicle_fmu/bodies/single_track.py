@@ -24,7 +24,7 @@ from modelkit.maths import clamp
 from modelkit.signal import Signal
 from vehicle_fmu.bodies.chassis import (
     CHOSEN,
-    GRAVITY,
+    GRAVITY_ACCELERATION,
     Build,
     ChassisParams,
     Motion,
@@ -106,8 +106,8 @@ def axle_loads(accel: float, normal: float, stance: Stance, p: SingleTrackParams
 
 def axle_stiffness(loads: Axles, stance: Stance, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
     """Return the cornering stiffness [N/rad] under ``loads``: proportional to load."""
-    rest_front = chassis.mass * GRAVITY * stance.cg_to_rear / stance.wheelbase
-    rest_rear = chassis.mass * GRAVITY - rest_front
+    rest_front = chassis.mass * GRAVITY_ACCELERATION * stance.cg_to_rear / stance.wheelbase
+    rest_rear = chassis.mass * GRAVITY_ACCELERATION - rest_front
     return Axles(p.stiffness_front * loads.front / rest_front, p.stiffness_rear * loads.rear / rest_rear)
 
 

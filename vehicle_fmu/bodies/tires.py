@@ -27,7 +27,7 @@ from modelkit.signal import Signal
 
 ADAMS = "ADAMS handbook, PAC2002 example tyre, as in CommonRoad vehicle models 3.0.2"
 CHOSEN = "chosen, usual for passenger cars"
-GONE = 1e9
+FREE_CARCASS_RATE = 1e9
 """Rate [1/s] at which a carcass without grip springs back."""
 
 
@@ -65,11 +65,11 @@ class TireParams(NamedTuple):
     damping: Annotated[float, Signal("s", "damping over stiffness of the carcass", 0.0, 0.1, CHOSEN)] = 0.01
 
 
-TINY = 1e-9
+LINEAR_SLIP = 1e-9
 """Slip below which a force is linear."""
 
 
-LIGHTEST = 1e-6
+MIN_WHEEL_LOAD = 1e-6
 """Load [N] below which a wheel hangs in the air."""
 
 
@@ -91,7 +91,7 @@ def relax(deflection: float, slip_speed: float, rate: float, h: float) -> float:
 def slide_rate(carcass: float, speed: float, secant: float) -> float:
     """Return c V / S [1/s]: how fast the road takes the deflection away; without grip at once."""
     if secant <= 1e-9:
-        return GONE
+        return FREE_CARCASS_RATE
     return carcass * speed / secant
 
 
@@ -119,7 +119,7 @@ def secants(kappa: float, slip_y: float, load: float, camber: float, grip: float
     slip stiffness itself. Where weighting leaves less than sliding rubber has (grip times load
     over slip: at large angles), that. No load or no grip: zero.
     """
-    if not load * grip > LIGHTEST:
+    if not load * grip > MIN_WHEEL_LOAD:
         return Force(0.0, 0.0)
     angle = math.atan(slip_y)
     fade_x = p.combined_x_fade * kappa
@@ -129,10 +129,10 @@ def secants(kappa: float, slip_y: float, load: float, camber: float, grip: float
     share_x = weight(angle, slope_x, p.combined_x_shape, p.combined_x_curvature)
     share_y = weight(kappa, slope_y, p.combined_y_shape, p.combined_y_curvature)
     force_x = p.stiffness_x * load
-    if abs(kappa) > TINY:
+    if abs(kappa) > LINEAR_SLIP:
         force_x = magic(kappa, force_x, p.shape_x, p.curvature_x, grip * p.friction_x * load) / kappa
     force_y = p.stiffness_y * load
-    if abs(slip_y) > TINY:
+    if abs(slip_y) > LINEAR_SLIP:
         peak = grip * p.friction_y * (1.0 + p.camber_friction * camber * camber) * load
         force_y = magic(angle, force_y, p.shape_y, p.curvature_y, peak) / slip_y
     least = grip * load / (1.0 + math.sqrt(kappa * kappa + slip_y * slip_y))

@@ -17,7 +17,7 @@ from vehicle_fmu.bodies.chassis import CHOSEN
 from vehicle_fmu.bodies.tires import Force, TireParams, relax, secants, slide_rate
 
 COMMONROAD = "CommonRoad vehicle models 3.0.2"
-SLOW = 1.0
+SLIP_REFERENCE_SPEED = 1.0
 """Slip is told against this speed [m/s] below it."""
 
 
@@ -86,5 +86,5 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
 
 def _passed(slide: float, along: float, hub: HubParams) -> float:
     """Return the share of the drive that traction control lets through at this wheel spin [m/s]."""
-    allowed = hub.traction * max(abs(along), SLOW)
+    allowed = hub.traction * max(abs(along), SLIP_REFERENCE_SPEED)
     return clamp(2.0 - slide / allowed, 0.0, 1.0)

@@ -12,7 +12,7 @@ from controller_fmu.apa.params import ApaParams, ApaSystemParams, Wish
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
-from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, VALID_RANGE_FRACTION, sensor_at
 from modelkit.vocabulary import Pose
 
 RIGHT = 0
@@ -72,7 +72,7 @@ def search(
     left_r = inputs.ultrasonic[LEFT_SENSOR]
     right = _hear(state.right, RIGHT, state.origin, inputs, params)
     left = _hear(state.left, LEFT, state.origin, inputs, params)
-    top = HEARD * params.car.ultrasonic.max_range
+    top = VALID_RANGE_FRACTION * params.car.ultrasonic.max_range
     far_left = DEEP if right.mode == 1 and state.right.mode != 1 else state.far_left
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
@@ -191,7 +191,7 @@ def _hear(side: SideState, which: int, origin: Pose, inputs: ApaInput, params: A
     u = dx * c + dy * s
     w = mirror * (dy * c - dx * s)
     reading = inputs.ultrasonic[sensor]
-    r = reading if reading < HEARD * params.car.ultrasonic.max_range else DEEP
+    r = reading if reading < VALID_RANGE_FRACTION * params.car.ultrasonic.max_range else DEEP
     return hear(side, u, w, r, params.car.ultrasonic.half_angle, params.apa.search)
 
 

@@ -1,4 +1,4 @@
-"""What is kept to on the way out of a slot: margins attempt by attempt, shifts, moves cut short, the lock."""
+"""What is kept to on the way out of a slot: margins attempt by attempt, manoeuvres, moves cut short, the lock."""
 
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams
@@ -11,7 +11,7 @@ MOVES = (4, 6, 10, 30, 30)
 AT_FIRST = 5
 """A car sets out with one of so many attempts; the last is for what it missed on the way."""
 SHIFTS = 30
-"""Most shifts."""
+"""Most manoeuvres."""
 CUTS = 30
 """A car whose moves were cut short more often than this finds no way."""
 LOCK = 0.99
@@ -23,12 +23,12 @@ def margins_out(attempt: int, params: ApaParams) -> Margins:
     return Margins(MARGINS[attempt], MARGINS[attempt] + LESS_BESIDE, 0.0, params.end.out)
 
 
-def next_attempt_out(attempt: int, plan: PlanSearch, shifts: int, direction: int) -> int:
+def next_attempt_out(attempt: int, plan: PlanSearch, manoeuvres: int, direction: int) -> int:
     """Return the attempt to make after this plan, with closer margins where it leads nowhere or takes many moves.
 
-    ``shifts``: at the end of the plan; ``direction``: last driven, 0: the car has not set out.
+    ``manoeuvres``: at the end of the plan; ``direction``: last driven, 0: the car has not set out.
     """
-    closer = plan.status == NOTHING or (plan.status == FOUND and shifts > SHIFTS)
+    closer = plan.status == NOTHING or (plan.status == FOUND and manoeuvres > SHIFTS)
     count = AT_FIRST if direction == 0 else len(MARGINS)
     return attempt + 1 if closer and attempt + 1 < count else attempt
 

@@ -9,7 +9,7 @@ from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
-from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, VALID_RANGE_FRACTION
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose
 
@@ -52,7 +52,7 @@ def slot_around(inputs: ApaInput, car: Shape, params: ApaSystemParams) -> Slot:
     What both sensors of that side hear near is a neighbour: the car stands across the road, its nose to it. They are
     where the sensors hear something, as far out as is likely.
     """
-    right_is_road = inputs.choice.side == ChosenSide.RIGHT
+    right_is_road = inputs.driver_selection.side == ChosenSide.RIGHT
     road = flank_of(inputs, right_is_road, params)
     other = flank_of(inputs, not right_is_road, params)
     side = Side.LEFT if right_is_road else Side.RIGHT
@@ -79,7 +79,9 @@ def _along(
     return slot._replace(
         a=a,
         depth=depth if walled else UNSEEN,
-        opposite=far - STANDS_OUT if NARROWEST < far < HEARD * params.car.ultrasonic.max_range else UNSEEN,
+        opposite=far - STANDS_OUT
+        if NARROWEST < far < VALID_RANGE_FRACTION * params.car.ultrasonic.max_range
+        else UNSEEN,
     )
 
 
@@ -91,7 +93,7 @@ def _across(
     behind = _nearest(REAR, inputs)
     near = min(road.front, road.rear)
     far = min(other.front, other.rear)
-    reach = HEARD * params.car.ultrasonic.max_range
+    reach = VALID_RANGE_FRACTION * params.car.ultrasonic.max_range
     slot = Slot(kind=Kind.PERPENDICULAR, side=side, length=near + 2.0 * car.half_width + min(far, KERB))
     mirror = mirror_of(slot)
     out = car.front + STANDS_OUT

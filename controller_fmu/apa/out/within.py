@@ -10,7 +10,7 @@ import math
 from controller_fmu.apa.around.local_map import OTHER_SIDE, LocalMap, ear_on
 from controller_fmu.apa.out.standing_in import NARROWEST_ACROSS
 from controller_fmu.apa.slot import UNSEEN, Kind
-from controller_fmu.common.sensors import HEARD
+from controller_fmu.common.sensors import VALID_RANGE_FRACTION
 from modelkit.car import CarUltrasonic
 
 FURTHER = 0.3
@@ -33,7 +33,11 @@ def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltras
             square = ear.ay > SQUARE
             if square and readings[number] >= sensors.max_range and here.across < ear.y + LOST * sensors.max_range:
                 here = here._replace(across=UNSEEN)
-            heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST_ACROSS
+            heard = (
+                square
+                and readings[number] < VALID_RANGE_FRACTION * sensors.max_range
+                and far > here.a.y + NARROWEST_ACROSS
+            )
             if heard and (far < here.across or far > here.across + FURTHER):
                 here = here._replace(across=far)
         return here

@@ -23,7 +23,7 @@ class Fit(NamedTuple):
 LONGEST_LACK = 3.0
 HALVINGS = 5
 SHARES = (1.0, 0.88, 0.855, 0.855, 0.6, 0.3)
-"""Of the margins: planned with, if that saves shifts, driven with once under way, and where there is no other way."""
+"""Of the margins: planned with, if that saves manoeuvres, driven with once under way, and as a last resort."""
 WALLS = (1.0, 0.88, 0.93, 0.855, 0.6, 0.3)
 """The same of the margin to kerb or wall, where the parked car leaves as much."""
 LEVEL = 2
@@ -104,7 +104,7 @@ def least_moves(slot: Slot, car: Shape, params: ApaParams) -> int:
         site = site_of(slot, car, margins_of(attempt, params))
         for variant in range(VARIANTS):
             way_in = exit_of(variant, site, car)
-            if way_in.found and way_in.moves + 1 <= plan.shifts:
+            if way_in.found and way_in.moves + 1 <= plan.manoeuvres:
                 return way_in.moves + 1
     return 0
 

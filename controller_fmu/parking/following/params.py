@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 from modelkit.car import Car
 from modelkit.signal import Signal
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 
 
 class FollowingParams(NamedTuple):

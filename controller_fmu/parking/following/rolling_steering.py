@@ -175,17 +175,17 @@ def upcoming_stop(path: PlannedPath, segment: int, left: float, context: Followi
         at += abs(path.segments[number].distance)
         transition = _transition_at(path, whole, number, at, context).transition
         if number >= segment and transition <= 0.0:
-            return UpcomingStop(at - here, speed, standstill_steering(path, number + 1, context))
+            return UpcomingStop(at - here, speed, dry_steering_count(path, number + 1, context))
         for share in (-0.5, 0.0, 0.5):
             place = at + share * transition
             if place > here:
                 there = steering_speed_limit(steering_rate_at(path, whole, place + JUST_BEHIND, context), context)
                 speed = min(speed, math.sqrt(there * there + 2.0 * context.drive.deceleration * (place - here)))
-    standstill = standstill_steering(path, whole.last + 1, context)
+    standstill = dry_steering_count(path, whole.last + 1, context)
     return UpcomingStop(whole.length + standstill.overrun - here, speed, standstill)
 
 
-def standstill_steering(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
+def dry_steering_count(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
     """Return the standstill before ``segment``; of the number of segments: that at the end."""
     before = reference_at(path, segment - 1, 0.0, context).curvature if segment > 0 else 0.0
     next_curvature = (

@@ -28,7 +28,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     predicted_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import SensorPose
-from modelkit.geometry import FAR
+from modelkit.geometry import NO_HIT
 
 NO_LANDMARK = -1
 CONTIGUOUS = 0.12
@@ -58,15 +58,15 @@ class Association(NamedTuple):
 
     explanation: int = Explanation.UNEXPLAINED
     landmark: int = NO_LANDMARK
-    chi_square: float = FAR
+    chi_square: float = NO_HIT
 
 
 def associate(
     landmarks: tuple[Landmark, ...], feature: EchoFeature, variance: float, params: MappingParams
 ) -> Association:
     """Return what a feature came from; ``variance`` [m2] of its range."""
-    best = FAR
-    second = FAR
+    best = NO_HIT
+    second = NO_HIT
     index = NO_LANDMARK
     for number in range(LANDMARKS):
         if landmarks[number].type != LandmarkType.NONE:
@@ -84,17 +84,17 @@ def associate(
 
 
 def mahalanobis(landmark: Landmark, feature: EchoFeature, variance: float) -> float:
-    """Return the squared Mahalanobis distance of a feature from a landmark; ``FAR``: cannot be of it."""
+    """Return the squared Mahalanobis distance of a feature from a landmark; ``NO_HIT``: cannot be of it."""
     lateral = feature.range * feature.bearing_sigma
     deviation = CORNER_DEVIATION if feature.type == FeatureType.CORNER else SURFACE_DEVIATION
     roughness = deviation * deviation
     if landmark.type == LandmarkType.POINT:
         if feature.type == FeatureType.SIDE:
-            return FAR
+            return NO_HIT
         return _point_distance(landmark, feature, variance + roughness, lateral * lateral + roughness)
     facing = feature.uy * math.cos(landmark.heading) - feature.ux * math.sin(landmark.heading)
     if facing > 0.0 or (facing > -FACING_COS and feature.type == FeatureType.SIDE):
-        return FAR
+        return NO_HIT
     along = along_of(landmark, feature.x, feature.y)
     offset = offset_of(landmark, feature.x, feature.y)
     beyond = max(0.0, max(landmark.start - along, along - landmark.end) - CONTIGUOUS)

@@ -10,7 +10,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
-from modelkit.geometry import FAR, Point
+from modelkit.geometry import NO_HIT, Point
 
 
 class EchoOrigin(IntEnum):
@@ -26,8 +26,8 @@ class EchoOrigin(IntEnum):
 class PredictedRange(NamedTuple):
     """The nearest point of a landmark in a field of view."""
 
-    distance: float = FAR
-    """From the sensor [m]; ``FAR``: out of view."""
+    distance: float = NO_HIT
+    """From the sensor [m]; ``NO_HIT``: out of view."""
     origin: int = EchoOrigin.OUT_OF_VIEW
     x: float = 0.0
     y: float = 0.0

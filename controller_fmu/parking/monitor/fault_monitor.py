@@ -52,7 +52,7 @@ def advance_clocks(
     angle = inputs.steering_wheel_angle
     steering = at_rest(angle, clocks.steering.steering)
     if expectation.steers:
-        tolerance = limits.limit.wheel_off
+        tolerance = limits.limit.steering_tracking_error
         requested = expectation.steering_wheel_angle
         steering = watch_steering(clocks.steering, requested, angle, tolerance, limits.steering_rate, dt_ns)
     waits = still and expectation.moves and not expectation.is_blocked
@@ -84,12 +84,12 @@ def fault_reason(
         return fault
     if clocks.frozen * 1e-9 > limit.pose_frozen:
         return Reason.POSE_FROZEN
-    if has_failed(clocks.steering, limit.wheel_fault):
+    if has_failed(clocks.steering, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
     if clocks.stopping * 1e-9 > limit.stopping:
         return Reason.NOT_STOPPING
-    if clocks.waiting * 1e-9 > limit.patience:
+    if clocks.waiting * 1e-9 > limit.driver_response_timeout:
         return Reason.NOT_MOVING if drives else Reason.STEERING_FAULT
-    if manoeuvres > limit.shifts:
+    if manoeuvres > limit.manoeuvres:
         return Reason.TOO_MANY_SHIFTS
     return Reason.TIMEOUT if clocks.running * 1e-9 > limit.duration else Reason.NONE

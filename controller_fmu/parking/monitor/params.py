@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 
 
 class MonitorParams(NamedTuple):

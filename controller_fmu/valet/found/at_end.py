@@ -1,7 +1,7 @@
 """At the end of a way into a slot that was found: is the car in its place, and what do its sides hear of it?"""
 
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.sensors import is_told_anew
-from controller_fmu.common.told import SlotKind
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step

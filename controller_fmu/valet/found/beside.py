@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.sensors import HEARD, sensor_at
+from controller_fmu.common.sensors import VALID_RANGE_FRACTION, sensor_at
 from controller_fmu.planning.plan_store import SIDES, PlanStore
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import GapLayout
@@ -38,7 +38,7 @@ class SideEchoes(NamedTuple):
 
 def hear_beside(state: SideEchoes, inputs: ValetInput, params: ValetParams) -> SideEchoes:
     """Return what was heard beside a standing car with the readings of one more cycle."""
-    far = HEARD * params.car.ultrasonic.max_range
+    far = VALID_RANGE_FRACTION * params.car.ultrasonic.max_range
     readings = tuple(inputs.ultrasonic[sensor] for sensor in SENSORS)
     sums = tuple(state.sums[n] + (readings[n] if readings[n] < far else 0.0) for n in range(4))
     heard = tuple(state.heard[n] + (1 if readings[n] < far else 0) for n in range(4))

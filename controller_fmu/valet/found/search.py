@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.external_slot import ExternalSlot, SlotKind
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
-from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, lay_around
@@ -89,7 +89,7 @@ def search(store: PlanStore, state: Search, inputs: ValetInput, params: ValetPar
     return state
 
 
-def told_slot(store: PlanStore, state: Search, told: ToldSlot, inputs: ValetInput, params: ValetParams) -> Search:
+def told_slot(store: PlanStore, state: Search, told: ExternalSlot, inputs: ValetInput, params: ValetParams) -> Search:
     """Return the search with the slot that is told from outside, once it has been passed; or why it cannot be one."""
     reason = told_reason(store, told, params)
     if reason != Reason.NONE:

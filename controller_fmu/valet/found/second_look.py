@@ -1,7 +1,7 @@
 """A slot at an angle into which there is no way after all: cars that stand the other way leave another one."""
 
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, sensor_at
-from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import Path
 from controller_fmu.planning.plan_store import PlanStore

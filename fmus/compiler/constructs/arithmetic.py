@@ -16,12 +16,12 @@ from fmus.compiler.target.values import (
     BIT_XOR,
     INT32,
     INT64,
+    MAX_EXACT_INTEGER,
     PRIMARY,
     PRODUCT,
     SUM,
     UNARY,
     UNKNOWN,
-    WHOLE,
     Value,
     as_float,
     as_int,
@@ -145,7 +145,7 @@ def _of_ints(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> 
 
 def _quotient(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     """Return ``a / b`` of integers, which Python rounds once from the exact quotient."""
-    if left.lies_in(-WHOLE, WHOLE) and right.lies_in(-WHOLE, WHOLE):
+    if left.lies_in(-MAX_EXACT_INTEGER, MAX_EXACT_INTEGER) and right.lies_in(-MAX_EXACT_INTEGER, MAX_EXACT_INTEGER):
         return _of_floats(node, as_float(left), as_float(right))
     return Value(FLOAT, f"{body.program.helper('int_quotient')}({left.text}, {right.text})")
 

@@ -15,12 +15,12 @@ from fmus.compiler.target.values import (
     BIT_OR,
     CHOICE,
     EQUAL,
+    MAX_EXACT_INTEGER,
     OR,
     ORDER,
     SHIFT,
     UNARY,
     UNKNOWN,
-    WHOLE,
     Place,
     Value,
     as_float,
@@ -111,7 +111,7 @@ def _compared(body: FunctionBody, node: ast.Compare, left: Value, sign: ast.cmpo
 def _int_with_float(body: FunctionBody, left: Value, sign: str, right: Value) -> Value | None:
     """Return the exact comparison of an integer that may be larger than a float holds; None if it is not."""
     whole = left if left.kind != FLOAT else right
-    if whole.real or whole.lies_in(-WHOLE, WHOLE):
+    if whole.real or whole.lies_in(-MAX_EXACT_INTEGER, MAX_EXACT_INTEGER):
         return None
     helper = body.program.helper("compare_int_float")
     one, other = (left, right) if whole is left else (right, left)

@@ -13,7 +13,7 @@ from fmus.compiler.source.kinds import Array, Kind, Mixed, Scalar, Struct, field
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.writers import Writers
 
-ALL = -1
+ALL_ITEMS = -1
 """Among the live items of a function's result: all of them."""
 MAX_ROUNDS = 1000
 """Rounds of the fixed point; each adds a live field, variable or item at least, so it ends far earlier."""
@@ -88,7 +88,7 @@ class Solver(CodeKinds):
     def is_live_item(self, function: FunctionType, number: int) -> bool:
         """Return whether item ``number`` of a function's result is read."""
         have = self.results.get(function, set())
-        return ALL in have or number in have
+        return ALL_ITEMS in have or number in have
 
     def is_live_parameter(self, function: FunctionType, name: str) -> bool:
         """Return whether a function reads its parameter; of one of unknown length it always does."""
@@ -245,7 +245,7 @@ class Visitor:
         elif isinstance(node, ast.Attribute):
             self._use_attribute(node, scope)
         elif isinstance(node, ast.Call):
-            self._use_call(node, items if items is not None else {ALL}, scope)
+            self._use_call(node, items if items is not None else {ALL_ITEMS}, scope)
         elif isinstance(node, ast.IfExp):
             self.use(node.test, None, scope)
             self.use(node.body, items, scope)
@@ -287,14 +287,14 @@ class Visitor:
             if method is None:
                 solver.need_whole(base)
             else:
-                solver.need_result(method, {ALL})
+                solver.need_result(method, {ALL_ITEMS})
         else:
             for cls in solver.found.classes:
                 if node.attr in cls._fields:
                     solver.need_field(whole_of(cls), node.attr)
                 found = vars(cls).get(node.attr)
                 if isinstance(found, property) and isinstance(found.fget, FunctionType):
-                    solver.need_result(found.fget, {ALL})
+                    solver.need_result(found.fget, {ALL_ITEMS})
         self.use(node.value, None, scope)
 
     def _use_call(self, node: ast.Call, items: set[int], scope: Scope) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from fmus.compiler.slicing.liveness import ALL, Solver
+from fmus.compiler.slicing.liveness import ALL_ITEMS, Solver
 from fmus.compiler.slicing.rewriting import DeadValue, Rewriter
 from fmus.compiler.source.discovery import Discovery
 from fmus.compiler.source.reading import Library
@@ -55,7 +55,7 @@ def slice_program(
     for name in live:
         solver.need_output(outputs, name)
     for root in roots:
-        solver.need_result(root, {ALL})
+        solver.need_result(root, {ALL_ITEMS})
     solver.solve()
     sliced = {function: Rewriter(solver, function).rewritten() for function in solver.results}
     return SliceResult(SlicedLibrary(library, sliced), frozenset(solver.fields))

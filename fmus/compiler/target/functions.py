@@ -19,7 +19,7 @@ from fmus.compiler.target.storage import put
 from fmus.compiler.target.values import Place, Value, is_scalar, returned_by_value
 from fmus.compiler.target.variables import variable
 
-SHORT = 20
+MAX_INLINE_LINES = 20
 """Functions of no more lines without a loop are inline."""
 LOOPS = ("for (", "while (")
 
@@ -197,5 +197,9 @@ def _head(program: Program, made: Instance) -> str:
         if not isinstance(kind, Open):
             texts.append(program.declared(kind, name if isinstance(kind, Array) else f"*{name}"))
     result = "void" if made.outs or made.changed or made.result is None else program.type_name(made.result)
-    inline = "inline " if len(made.lines) <= SHORT and not any(line.startswith(LOOPS) for line in made.lines) else ""
+    inline = (
+        "inline "
+        if len(made.lines) <= MAX_INLINE_LINES and not any(line.startswith(LOOPS) for line in made.lines)
+        else ""
+    )
     return f"static {inline}{result} {made.name}({', '.join(texts) or 'void'})"

@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
-WIDTH = 120
+MAX_LINE_LENGTH = 120
 INDENT = "    "
 BREAKS = ((", ", 2, 0), (" && ", 1, 1), (" || ", 1, 1), (" ? ", 1, 1), (" : ", 1, 1), (" = ", 3, 3)) + tuple(
     (f" {sign} ", 1, cost) for cost, signs in ((3, "+-"), (4, "*/")) for sign in signs
@@ -45,10 +45,10 @@ def laid_out(lines: Sequence[str], depth: int = 0) -> list[str]:
 
 
 def wrapped(line: str, indent: str) -> list[str]:
-    """Return one statement as lines no longer than ``WIDTH``."""
+    """Return one statement as lines no longer than ``MAX_LINE_LENGTH``."""
     done = []
     rest = indent + line
-    while len(rest) > WIDTH:
+    while len(rest) > MAX_LINE_LENGTH:
         at = _best_break(rest, len(rest) - len(rest.lstrip()))
         if at is None:
             break
@@ -61,12 +61,12 @@ def _best_break(text: str, start: int) -> int | None:
     best: tuple[float, int] | None = None
     depth = 0
     place = start
-    while place < min(WIDTH, len(text)):
+    while place < min(MAX_LINE_LENGTH, len(text)):
         character = text[place]
         depth += (character in "([{") - (character in ")]}")
         if place > start + 8:
             for mark, kept, cost in BREAKS:
-                if text.startswith(mark, place) and place + kept <= WIDTH:
+                if text.startswith(mark, place) and place + kept <= MAX_LINE_LENGTH:
                     rank = (depth * 10 + cost - 0.05 * (place - start), -place)
                     if best is None or rank < best:
                         best = rank
@@ -78,7 +78,7 @@ def _best_break(text: str, start: int) -> int | None:
 def comment(text: str, depth: int = 0) -> list[str]:
     """Return ``text`` as a C comment, paragraphs and indented lines kept."""
     safe = text.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").rstrip()
-    room = WIDTH - 4 - len(INDENT) * depth
+    room = MAX_LINE_LENGTH - 4 - len(INDENT) * depth
     lines: list[str] = []
     for line in safe.splitlines():
         lines += (

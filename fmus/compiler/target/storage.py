@@ -8,7 +8,16 @@ from fmus.compiler.source.kinds import Array, Scalar, Struct
 from fmus.compiler.target.access import Access, access_to, accesses, is_at, overlap
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.layout import flat
-from fmus.compiler.target.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
+from fmus.compiler.target.values import (
+    MAX_BY_VALUE_SCALARS,
+    UNKNOWN,
+    Place,
+    Value,
+    is_scalar,
+    place_of,
+    rvalue,
+    scalars_in,
+)
 
 NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?|true|false")
 ONE_BY_ONE = 4
@@ -26,7 +35,7 @@ def put(body: FunctionBody, place: Place, value: Value, busy: bool = False) -> N
             body.emit(f"{place.whole} = {rvalue(value)};")
     elif value.base is not None and is_at(body, value.base, place):
         value.fill(place)
-    elif value.braces and isinstance(value.kind, Struct) and scalars_in(value.kind) <= SMALL:
+    elif value.braces and isinstance(value.kind, Struct) and scalars_in(value.kind) <= MAX_BY_VALUE_SCALARS:
         body.emit(f"{place.whole} = ({body.program.type_name(value.kind)}){value.braces};")
     elif busy and value.members is not None:
         put_members(body, place, value.members)

@@ -9,11 +9,11 @@ from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Scalar, St
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUAL, BIT_AND, BIT_XOR, BIT_OR, AND, OR, CHOICE = range(13, 0, -1)
 """How tightly the operators of C bind."""
 UNKNOWN: Any = object()
-WHOLE = 2**53
+MAX_EXACT_INTEGER = 2**53
 """Integers up to here are exact as float."""
 INT32 = 2**31
 INT64 = 2**63
-SMALL = 8
+MAX_BY_VALUE_SCALARS = 8
 """Structs of no more scalars are returned by value, and written in one line."""
 
 
@@ -143,7 +143,7 @@ def as_float(value: Value) -> Value:
     """Return a number or truth value as a float."""
     if value.kind == FLOAT:
         return value
-    if value.const is not UNKNOWN and abs(int(value.const)) <= WHOLE:
+    if value.const is not UNKNOWN and abs(int(value.const)) <= MAX_EXACT_INTEGER:
         real = literal(float(value.const))
         written = value.kind == BOOL or value.text.lstrip("-").isdigit()
         return real if written else replace(real, text=f"(double){within(value, UNARY)}", level=UNARY)
@@ -211,4 +211,4 @@ def scalars_in(kind: Kind) -> int:
 
 def returned_by_value(kind: Kind) -> bool:
     """Return whether a C function gives a kind as its value; others are written where a pointer says."""
-    return isinstance(kind, Scalar) or (isinstance(kind, Struct) and scalars_in(kind) <= SMALL)
+    return isinstance(kind, Scalar) or (isinstance(kind, Struct) and scalars_in(kind) <= MAX_BY_VALUE_SCALARS)

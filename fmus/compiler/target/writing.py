@@ -9,7 +9,7 @@ from typing import Any
 from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Scalar, Struct, fields_of, hints_of, parts
 from fmus.compiler.source.reading import field_meanings, plain
 from fmus.compiler.target.functions import Instance
-from fmus.compiler.target.layout import WIDTH, comment, flat, laid_out
+from fmus.compiler.target.layout import MAX_LINE_LENGTH, comment, flat, laid_out
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Constant, Program
 from fmus.compiler.target.values import INT32, float_text, int_text
@@ -86,7 +86,7 @@ class Writer:
         inner = [self.value_lines(*part) for part in zip(kinds, values, hints, strict=True)]
         if all(len(lines) == 1 for lines in inner):
             one = "{" + ", ".join(head + lines[0] for head, lines in zip(heads, inner, strict=True)) + "}"
-            if len(one) < WIDTH - 40:
+            if len(one) < MAX_LINE_LENGTH - 40:
                 return [one]
             if isinstance(kind, Array) and isinstance(kind.item, Scalar):
                 return [one]
@@ -205,7 +205,7 @@ def with_note(line: str, note: str) -> list[str]:
     if not note:
         return [line]
     (text, *more) = comment(note, 1)
-    if not more and len(line) + 2 + len(text) <= WIDTH:
+    if not more and len(line) + 2 + len(text) <= MAX_LINE_LENGTH:
         return [f"{line} {text}"]
     return [f"    {part}" for part in (text, *more)] + [line]
 

@@ -215,11 +215,11 @@ FMI3(fmi3Status) fmi3ExitConfigurationMode(fmi3Instance);
 FMI3(fmi3Status) fmi3GetIntervalDecimal(FMI3_REFERENCES, fmi3Float64 intervals[], fmi3IntervalQualifier[]);
 FMI3(fmi3Status) fmi3GetIntervalFraction(FMI3_REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
                                          fmi3IntervalQualifier[]);
-FMI3(fmi3Status) fmi3GetShiftDecimal(FMI3_REFERENCES, fmi3Float64 shifts[]);
+FMI3(fmi3Status) fmi3GetShiftDecimal(FMI3_REFERENCES, fmi3Float64 manoeuvres[]);
 FMI3(fmi3Status) fmi3GetShiftFraction(FMI3_REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[]);
 FMI3(fmi3Status) fmi3SetIntervalDecimal(FMI3_REFERENCES, const fmi3Float64 intervals[]);
 FMI3(fmi3Status) fmi3SetIntervalFraction(FMI3_REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]);
-FMI3(fmi3Status) fmi3SetShiftDecimal(FMI3_REFERENCES, const fmi3Float64 shifts[]);
+FMI3(fmi3Status) fmi3SetShiftDecimal(FMI3_REFERENCES, const fmi3Float64 manoeuvres[]);
 FMI3(fmi3Status) fmi3SetShiftFraction(FMI3_REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]);
 FMI3(fmi3Status) fmi3EvaluateDiscreteStates(fmi3Instance);
 FMI3(fmi3Status) fmi3UpdateDiscreteStates(fmi3Instance, fmi3Boolean *again, fmi3Boolean *terminate,

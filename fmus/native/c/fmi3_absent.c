@@ -138,8 +138,8 @@ fmi3Status fmi3GetIntervalFraction(FMU_REFERENCES, fmi3UInt64 counters[], fmi3UI
     return fmu_no_such_type(c, references, count, "fmi3GetIntervalFraction");
 }
 
-fmi3Status fmi3GetShiftDecimal(FMU_REFERENCES, fmi3Float64 shifts[]) {
-    (void)shifts;
+fmi3Status fmi3GetShiftDecimal(FMU_REFERENCES, fmi3Float64 manoeuvres[]) {
+    (void)manoeuvres;
     return fmu_no_such_type(c, references, count, "fmi3GetShiftDecimal");
 }
 
@@ -158,8 +158,8 @@ fmi3Status fmi3SetIntervalFraction(FMU_REFERENCES, const fmi3UInt64 counters[], 
     return fmu_no_such_type(c, references, count, "fmi3SetIntervalFraction");
 }
 
-fmi3Status fmi3SetShiftDecimal(FMU_REFERENCES, const fmi3Float64 shifts[]) {
-    (void)shifts;
+fmi3Status fmi3SetShiftDecimal(FMU_REFERENCES, const fmi3Float64 manoeuvres[]) {
+    (void)manoeuvres;
     return fmu_no_such_type(c, references, count, "fmi3SetShiftDecimal");
 }
 

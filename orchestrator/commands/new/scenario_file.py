@@ -31,7 +31,7 @@ FINAL_STATES = {
     "standby": frozenset({"standby", "idle", "init", "off", "ready", "wait", "waiting", "inactive", "none"}),
 }
 """State of our controller -> words in the names of states that probably mean it."""
-SHOWN_ROLES = {"phase": "mode", "shifts": "shifts", "prompt": "prompt", "steering_wheel_request": "request"}
+SHOWN_ROLES = {"phase": "mode", "manoeuvres": "manoeuvres", "prompt": "prompt", "steering_wheel_request": "request"}
 """Output of our controller -> its role."""
 VEHICLE_ROLES = {"speed": "speed", "steering_wheel_angle": "wheel", "clearance": "clearance"}
 """Output of our vehicle -> its role."""
@@ -79,13 +79,13 @@ def scenario_of_fmus(name: str, base: str, files: Mapping[str, str], folder: Pat
         is_open += _open_inputs(sides[owner], suggestions, sides[other])
     roles = [*_controller_roles(sides["controller"], found), *_vehicle_roles(sides["vehicle"])]
     spare = _spare_outputs(sides, found, roles)
-    slaves = ", ".join(f"{owner}: {_yaml(_relative(text, folder))}" for owner, text in files.items())
+    components = ", ".join(f"{owner}: {_yaml(_relative(text, folder))}" for owner, text in files.items())
     head = [
         f"# {MARK!r} marks suggestions: check signal, unit and sign, then delete the mark.",
         f"name: {name}",
-        f"base: {_yaml(base if not base.endswith(YAML) else _relative(base, folder))}",
+        f"extends: {_yaml(base if not base.endswith(YAML) else _relative(base, folder))}",
         "system:",
-        f"  slaves: {{{slaves}}}",
+        f"  components: {{{components}}}",
     ]
     rest = [f"  # not connected: {item}" for item in is_open[:MAX_LISTED]]
     if spare:
@@ -178,7 +178,7 @@ def _controller_roles(side: _Side, found: Sequence[Suggestion]) -> list[str]:
     request = next((item for item in found if item.target == "vehicle.steering_wheel_request"), None)
     if request is not None and request.is_sure and "steering_wheel_request" not in names:
         lines.append(f"request: {_yaml(_source(request))}  {MARK}")
-    for name in ("shifts", "prompt"):
+    for name in ("manoeuvres", "prompt"):
         if name not in names:
             wanted = Signals("controller", Ports([ours[name]]))
             lines += [

@@ -7,7 +7,7 @@ from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.drawing.beside import PictureBeside
 from orchestrator.session.options import add_foreign_arguments, add_output_arguments
 
-PORT = 8765
+DEFAULT_PORT = 8765
 """Where Foxglove looks for a stream if nothing else is said."""
 EXAMPLES = """examples:
   apa run guo2015-case4
@@ -39,9 +39,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--live",
         nargs="?",
         type=int,
-        const=PORT,
+        const=DEFAULT_PORT,
         metavar="PORT",
-        help=f"stream the run live at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
+        help=f"stream the run live at this WebSocket ({DEFAULT_PORT}), to Foxglove or Lichtblick; includes --realtime",
     )
     add_output_arguments(parser, "runs/NAME, the next free runs/NAME-2, ... if there is a run")
 

@@ -78,7 +78,7 @@ def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: 
         return
     from orchestrator.session.terminal import print_summary
 
-    print_summary(summary, scenario.title, scenario.expect)
+    print_summary(summary, scenario.title, scenario.expected_outcome)
 
 
 def _write_pages(out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign) -> None:

@@ -125,9 +125,9 @@ def _silent(f: F, found: F) -> dict[str, Array]:
     """Return the faults of more than one sensor: those that follow the one that is drawn, around the car."""
     value = np.where(f["lost"] == NO_SENSOR, found["vehicle.car.ultrasonic.max_range"], np.nan)
     changed: dict[str, Array] = {}
-    for number in range(world.SENSORS):
-        after = (number - f["lost_sensor"]) % world.SENSORS
+    for number in range(world.SENSOR_COUNT):
+        after = (number - f["lost_sensor"]) % world.SENSOR_COUNT
         lost = (f["lost"] >= NO_SENSOR) & (after <= f["lost_count"])
-        changed[f"faults[{number + 1}].start"] = np.where(lost, f["lost_at"], world.NEVER)
+        changed[f"faults[{number + 1}].start"] = np.where(lost, f["lost_at"], world.NEVER_TIME)
         changed[f"faults[{number + 1}].value"] = np.where(lost, value, 0.0)
     return changed

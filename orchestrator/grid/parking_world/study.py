@@ -35,21 +35,21 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.confidence import percent_interval
 
-APA = 5
-VALET = 7
-OF_SYSTEM = {VALET: {"search.active": True, "plan.margin": 0.12}}
+APA_SYSTEM = 5
+VALET_SYSTEM = 7
+OF_SYSTEM = {VALET_SYSTEM: {"search.active": True, "plan.margin": 0.12}}
 """Parameters of a system that searches only if it is told to."""
 MOST_ROWS = 20
 
 
-def study(runs: int = 2000, seed: int = 1, system: int = APA) -> Study:
+def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     """Return the study; ``system``: the number of ``controller.system`` that parks, on the same rows."""
     space = Space(FACTORS, _stacked)
     shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
     seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
     shared = scenario(system)
     content = {
-        "name": "parking-world" if system == APA else f"parking-world-{system}",
+        "name": "parking-world" if system == APA_SYSTEM else f"parking-world-{system}",
         "title": "Parking in ordinary streets and car parks",
         "description": "Parked: within GB/T 41630 of a slot by ISO 16787, nothing touched.",
         "map": {"x": "extra", "y": "cars_a", "split": "kind"},
@@ -68,7 +68,7 @@ def scenario(system: int) -> Scenario:
     update = {
         "name": "parking-world",
         "controller": {"system": system, **OF_SYSTEM.get(system, {})},
-        "limits": [*shipped_requirements("no-contact")],
+        "requirements": [*shipped_requirements("no-contact")],
     }
     return base.model_copy(update=update)
 

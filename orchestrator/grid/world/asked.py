@@ -23,7 +23,7 @@ COLUMNS = {
 }
 HEARD = UltrasonicParams().kerb_height
 """Kerbs lower than this [m] are not heard."""
-FASTEST = 3.6 * SearchParams().speed
+MAX_SEARCH_SPEED = 3.6 * SearchParams().speed
 """The assist is asked for up to this speed [km/h]."""
 
 
@@ -45,10 +45,10 @@ def is_valid(columns: Columns) -> Array:
     values = {name: np.asarray(columns[name]) for name in ("kind", "behind", "kerb_height", "depth")}
     heard = (values["behind"] == WITH_KERB) & (values["kerb_height"] >= HEARD)
     under_tail = values["depth"] < np.asarray(columns["vehicle.car.rear_overhang"]) - WHEEL
-    return np.asarray(~((values["kind"] == PERPENDICULAR) & heard & under_tail))
+    return np.asarray(~((values["kind"] == PERPENDICULAR_KIND) & heard & under_tail))
 
 
-PERPENDICULAR = 1
+PERPENDICULAR_KIND = 1
 """Choice of the factor ``kind``."""
 
 
@@ -60,9 +60,9 @@ def is_possible(columns: Columns) -> Array:
     through the slot itself, who looks at nothing.
     """
     f = {name: np.asarray(columns[name]) for name in NEEDED}
-    narrowed = (f["mover"] >= NOBODY) & (f["kind"] != PERPENDICULAR) & (f["mover_way"] > f["extra"])
+    narrowed = (f["mover"] >= NOBODY) & (f["kind"] != PERPENDICULAR_KIND) & (f["mover_way"] > f["extra"])
     walked = (f["person"] >= NOBODY) & crosses_slot(f["person_place"])
-    return np.asarray((f["speed"] <= FASTEST) & (f["lost"] < NO_SENSOR) & ~narrowed & ~walked)
+    return np.asarray((f["speed"] <= MAX_SEARCH_SPEED) & (f["lost"] < NO_SENSOR) & ~narrowed & ~walked)
 
 
 NEEDED = ("speed", "lost", "mover", "mover_way", "kind", "extra", "person", "person_place")

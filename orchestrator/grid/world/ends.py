@@ -18,11 +18,11 @@ from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.columns import WITHIN
-from orchestrator.sweep.study.study import Columns, Derived, Goal
+from orchestrator.sweep.study.study import Columns, Derived, Objective
 from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.numbers import Number
 from orchestrator.verdict.outcome import BEYOND
-from orchestrator.verdict.standing import slot_margin
+from orchestrator.verdict.standing import outline_margin
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
 TOUCHING = When("vehicle.contact", (1,))
@@ -137,11 +137,11 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
     if row.get("mover", 0) < NOBODY:
         return False
     way = math.copysign(min(abs(row["mover_way"]), _driven(row)), row["mover_way"])
-    margin = row["final.slot_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
-    turned, aside, out, shifts = _limits_of(int(row["kind"]) + 1)
+    margin = row["final.outline_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
+    turned, aside, out, manoeuvres = _limits_of(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
     near = heading <= turned and lateral <= aside and margin >= -out
-    return bool(near and row["shifts"] <= shifts)
+    return bool(near and row["manoeuvres"] <= manoeuvres)
 
 
 def _margin(row: Mapping[str, Any], out: float) -> float:
@@ -151,13 +151,13 @@ def _margin(row: Mapping[str, Any], out: float) -> float:
     wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
     car = [wheelbase + front, rear, 0.5 * width, wheelbase]
     pose = [row[f"final.{axis}"] for axis in AXES]
-    return float(slot_margin(*(np.array([item]) for item in (pose, slot, car)))[0])
+    return float(outline_margin(*(np.array([item]) for item in (pose, slot, car)))[0])
 
 
 @cache
 def _limits_of(kind: int) -> tuple[float, ...]:
-    """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its shifts."""
-    return tuple(abs(float(item.limit)) for item in shipped_requirements(GBT_SETS[kind], *CLAIMED, "shifts"))
+    """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its manoeuvres."""
+    return tuple(abs(float(item.limit)) for item in shipped_requirements(GBT_SETS[kind], *CLAIMED, "manoeuvres"))
 
 
 def _driven(row: Mapping[str, Any]) -> float:
@@ -172,19 +172,21 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
     name = min(things, key=lambda name: _gap(row, pose, *things[name]))
     way = row["touched.speed"] * row["step"]
     before = Pose(pose.x - way * math.cos(pose.heading), pose.y - way * math.sin(pose.heading), pose.heading)
-    return Touched(name, name in MOVABLE and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0)
+    return Touched(
+        name, name in MOVABLE_OBSTACLES and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0
+    )
 
 
 def is_driven_into(row: Mapping[str, Any], touched: Touched | None) -> bool:
     """Return whether somebody who moves has touched a car that stands: it could have done no more."""
-    if touched is None or touched.name not in MOVABLE:
+    if touched is None or touched.name not in MOVABLE_OBSTACLES:
         return False
-    return abs(row["touched.speed"]) <= STANDS and _is_moving(row, touched.name)
+    return abs(row["touched.speed"]) <= STANDSTILL_SPEED and _is_moving(row, touched.name)
 
 
-STANDS = 0.01
+STANDSTILL_SPEED = 0.01
 """A car no faster [m/s] stands: so the assist sees it."""
-MOVABLE = THINGS[:2] + THINGS[3:4]
+MOVABLE_OBSTACLES = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
 GROUND_CLEARANCE = SceneParams().ground_clearance
 """Kerbs lower than this [m] pass under the bumpers."""
@@ -238,7 +240,7 @@ def _honest(columns: Columns) -> Array:
     """Return by how much a run that claims to be parked is within GB/T 41630, as a share of its limits."""
     heading, lateral = np.abs(columns["final.heading_error"]), np.abs(columns["final.lateral_error"])
     turned, aside, out = (abs(float(item.limit)) for item in shipped_requirements("gbt41630", *CLAIMED))
-    shares = [1.0 - heading / turned, 1.0 - lateral / aside, 1.0 + columns["final.slot_margin"] / out]
+    shares = [1.0 - heading / turned, 1.0 - lateral / aside, 1.0 + columns["final.outline_margin"] / out]
     least = np.minimum(np.min(shares, axis=0), 1.0)
     ends = np.asarray(columns["end"])
     found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))
@@ -248,8 +250,8 @@ def _honest(columns: Columns) -> Array:
 LEAST, LARGEST = 1e-4, 0.5
 """Margins of runs that have not touched anything [m]."""
 GOALS = (
-    Goal("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
-    Goal("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
+    Objective("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
+    Objective("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
 INTO = {"driven_into": Number("1", "1: contact at standstill caused by a moving obstacle")}
 FOUND = Derived(

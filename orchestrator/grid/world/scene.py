@@ -28,10 +28,10 @@ THINGS = ("first neighbour", "second neighbour", "wall behind", "person", "kerb 
 """What stands in the scene: boxes 1 to 4, then kerb 1."""
 WALLED, WITH_KERB = 1, 2
 """Choices of the factor ``behind``."""
-SENSORS = 12
-NEVER = 3e4
+SENSOR_COUNT = 12
+NEVER_TIME = 3e4
 """After any run [s]."""
-PERSON = 0.5
+PERSON_WIDTH = 0.5
 """Width of a person [m]."""
 FAR_SIDE, NEAR_SIDE, BETWEEN = 8.0, 0.6, -1.0
 """Where a person sets out who goes towards the slots, where one is gone who goes between cars, and where one has
@@ -40,7 +40,7 @@ FROM_BEHIND = 3.0
 """How far behind the slot's end [m] somebody sets out who comes out of it."""
 WHEEL = SceneParams().tyre_reach
 """Tyres reach this far beyond the axles [m]."""
-WALL = 1.0
+WALL_THICKNESS = 1.0
 """Thickness [m]."""
 RUN_UP = 5.0
 """From the start to the first neighbour [m], and what it takes to reach the speed."""
@@ -111,9 +111,9 @@ def _behind(f: F, size: F) -> dict[str, Array]:
     half_kerb = np.where(size["parallel"], half, 0.8)
     return {
         "scene.boxes[3].x": middle,
-        "scene.boxes[3].y": sign * (y - 0.5 * WALL),
+        "scene.boxes[3].y": sign * (y - 0.5 * WALL_THICKNESS),
         "scene.boxes[3].length": np.where(wall, 2.0 * half, 0.0),
-        "scene.boxes[3].width": np.full_like(middle, WALL),
+        "scene.boxes[3].width": np.full_like(middle, WALL_THICKNESS),
         "scene.kerbs[1].x1": middle - half_kerb,
         "scene.kerbs[1].x2": middle + half_kerb,
         "scene.kerbs[1].y1": sign * stop,
@@ -212,8 +212,8 @@ def _motion(f: F, told: F) -> dict[str, Array]:
         "vehicle.steering.dead_time": f["dead_time"],
         "vehicle.steering.lag": f["lag"],
         **{f"vehicle.road.grip[{wheel}]": f["grip"] for wheel in range(1, 5)},
-        "vehicle.road.slope": 0.01 * f["slope"],
-        "vehicle.road.bank": 0.01 * f["bank"],
+        "vehicle.road.grade": 0.01 * f["slope"],
+        "vehicle.road.cross_slope": 0.01 * f["bank"],
         "vehicle.drive.brake_lag": f["brake_lag"],
         "vehicle.drive.drive_lag": f["drive_lag"],
         "vehicle.drive.acceleration_limit": _acceleration(f),
@@ -229,17 +229,17 @@ def _person(f: F, size: F) -> dict[str, Array]:
     from behind its end. Where that is a wall he goes in.
     """
     x, slot_end = f["person_place"] * size["slot"], _slot_end(f, size)
-    in_gap = (x > -0.5 * PERSON) & (x < size["slot"] + 0.5 * PERSON)
+    in_gap = (x > -0.5 * PERSON_WIDTH) & (x < size["slot"] + 0.5 * PERSON_WIDTH)
     walks, outward = f["person"] >= NOBODY, (f["person"] > NOBODY) & ~(in_gap & (f["behind"] == WALLED))
     out_from = np.where(in_gap, slot_end - FROM_BEHIND, BETWEEN)
-    into = np.where(crosses_slot(f["person_place"]), slot_end - PERSON, NEAR_SIDE)
+    into = np.where(crosses_slot(f["person_place"]), slot_end - PERSON_WIDTH, NEAR_SIDE)
     begin, end = np.where(outward, out_from, FAR_SIDE), np.where(outward, FAR_SIDE, into)
     speed = f["person_speed"] * np.sign(end - begin)
     box = {
         "x": x,
         "y": size["sign"] * begin,
-        "length": np.where(walks, PERSON, 0.0),
-        "width": np.full_like(x, PERSON),
+        "length": np.where(walks, PERSON_WIDTH, 0.0),
+        "width": np.full_like(x, PERSON_WIDTH),
         "appear_at": f["person_at"],
         "disappear_at": f["person_at"] + (end - begin) / speed,
         "speed_y": size["sign"] * speed,
@@ -274,8 +274,8 @@ def _lost(f: F, told: F) -> dict[str, Array]:
     """Return what the controller hears of a sensor that fails: nothing in reach, or no number."""
     value = np.where(f["lost"] == NO_SENSOR, told["car.ultrasonic.max_range"], np.nan)
     found: dict[str, Array] = {}
-    for number in range(SENSORS):
+    for number in range(SENSOR_COUNT):
         lost = (f["lost"] >= NO_SENSOR) & (f["lost_sensor"] == number)
-        found[f"faults[{number + 1}].start"] = np.where(lost, f["lost_at"], NEVER)
+        found[f"faults[{number + 1}].start"] = np.where(lost, f["lost_at"], NEVER_TIME)
         found[f"faults[{number + 1}].value"] = np.where(lost, value, 0.0)
     return found

@@ -26,7 +26,7 @@ from orchestrator.grid.world.ends import (
     WALKED_INTO,
 )
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
-from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
+from orchestrator.grid.world.scene import NEVER_TIME, SENSOR_COUNT, F, parameters
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
@@ -38,7 +38,7 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.confidence import percent_interval
 
-STOP = 150.0
+STOP_TIME = 150.0
 BODY_STEP = 0.0025
 """Internal steps [s] of the bodies with mass: top speeds are those of 1 ms to 2 mm/s, in half the time."""
 KERB = "kerb"
@@ -57,7 +57,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA) -> 
     content = {
         "name": "apa-world-mild" if mild else "apa-world",
         "title": "The parking assist in the world: everything disturbed at once",
-        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, shifts), nothing touched.",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), nothing touched.",
         "map": {"x": "extra", "y": "heading", "split": "kind"},
         "seed": seed,
         "mild": mild,
@@ -76,16 +76,16 @@ def scenario(system: int = APA) -> Scenario:
     """Return what all runs share; the system is told neither slot nor target."""
     return Scenario(
         name="apa-world",
-        stop_time=STOP,
-        vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
+        stop_time=STOP_TIME,
+        vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
         controller={"system": system},
         faults=[
-            Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER)
-            for number in range(1, SENSORS + 1)
+            Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)
+            for number in range(1, SENSOR_COUNT + 1)
         ],
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
-        limits=[*limits_beside_neighbours("gbt41630"), *shipped_requirements("no-contact")],
+        requirements=[*limits_beside_neighbours("gbt41630"), *shipped_requirements("no-contact")],
     )
 
 

@@ -47,11 +47,11 @@ class Driver {
   }
 
   give(course) {
-    course.set("vehicle.person.drives", this.drives ? 1 : 0);
-    course.set("vehicle.person.accelerator", this.pedal.accelerator);
-    course.set("vehicle.person.brake", this.pedal.brake);
-    course.set("vehicle.person.lever", this.lever);
-    course.set("vehicle.person.confirm", this.confirm ? 1 : 0);
+    course.set("vehicle.manual.active", this.drives ? 1 : 0);
+    course.set("vehicle.manual.accelerator", this.pedal.accelerator);
+    course.set("vehicle.manual.brake", this.pedal.brake);
+    course.set("vehicle.manual.lever", this.lever);
+    course.set("vehicle.manual.confirm", this.confirm ? 1 : 0);
   }
 }
 

@@ -5,7 +5,7 @@ const SEEN = [
   ...AXES.map((axis) => `vehicle.pose.${axis}`), "vehicle.speed", "vehicle.front_wheel_angle", "vehicle.steering_wheel_angle",
   "vehicle.gear", "vehicle.brake_pedal", "vehicle.contact", "vehicle.driver_takeover",
   ...Array.from({ length: 12 }, (_, i) => `vehicle.ultrasonic[${i + 1}]`),
-  "controller.phase", "controller.reason", "controller.prompt", "controller.advised_speed", "controller.shifts", ...MODES.slice(1),
+  "controller.phase", "controller.reason", "controller.prompt", "controller.advised_speed", "controller.manoeuvres", ...MODES.slice(1),
 ];
 const FINE = 0.05; // time between the rows that are kept [s]
 

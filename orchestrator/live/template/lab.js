@@ -48,7 +48,7 @@ class Lab {
     const run = whole.run(situation.params(), times, every);
     const took = performance.now() - begun;
     const start = situation.pose("vehicle.start"), origin = [Math.round(start[0]), Math.round(start[1])];
-    return { history: wholeHistory(this.engine, this.seen, situation.still(origin), run), took, ...judged(run.row, situation, this.table) };
+    return { history: wholeHistory(this.engine, this.seen, situation.still(origin), run), took, ...evaluated(run.row, situation, this.table) };
   }
 }
 
@@ -59,7 +59,7 @@ function* gridOf(lab, [a, b], rows) {
     const cells = a.values.map((x) => {
       const situation = new Situation(lab.situation.data, lab.engine.models, { ...lab.situation.changes, [a.name]: x, [b.name]: y });
       const { outcome, reason, numbers } = judged(course.run(situation.params(), times, 1 << 30).row, situation, lab.table);
-      return { outcome, reason, error: Math.hypot(numbers["final.lateral_error"], numbers["final.longitudinal_error"]), shifts: numbers.shifts };
+      return { outcome, reason, error: Math.hypot(numbers["final.lateral_error"], numbers["final.longitudinal_error"]), manoeuvres: numbers.manoeuvres };
     });
     yield { number, cells, of: rows };
   }

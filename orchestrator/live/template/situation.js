@@ -73,7 +73,7 @@ class Situation {
   tellMap(found) {
     const stays = (box) => box.length > 0 && box.appear_at === 0 && box.disappear_at >= 1e9 && box.speed_x === 0 && box.speed_y === 0;
     const corners = (box) => [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => moved([box.x, box.y, box.heading], 0.5 * a * box.length, 0.5 * b * box.width));
-    const things = [...this.data.polygons, ...this.rows("scene.boxes", BOX).filter(stays).map(corners), ...this.kerbs.map((kerb) => [[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])];
+    const things = [...this.data.obstacles, ...this.rows("scene.boxes", BOX).filter(stays).map(corners), ...this.kerbs.map((kerb) => [[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])];
     const rows = things.flatMap((points, i) => points.map(([x, y]) => ({ x, y, polygon: i + 1 })));
     for (let i = 0; this.known.has(`controller.map[${i + 1}].x`); i++)
       for (const field of ["x", "y", "polygon"]) found[this.known.get(`controller.map[${i + 1}].${field}`).place] = rows[i] ? rows[i][field] : 0;
@@ -117,7 +117,7 @@ class Situation {
       origin, turn: this.vehicle("start.heading"), car: this.car,
       slot: slot && outline({ x: slot[0], y: slot[1], heading: slot[2], length: slot[3], width: slot[4] }),
       target: target && [target[0] - origin[0], target[1] - origin[1], target[2]],
-      boxes: [...this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })), ...this.data.polygons.map((corners) => ({ corners: less(corners), from: 0, to: 1e9 }))],
+      boxes: [...this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })), ...this.data.obstacles.map((corners) => ({ corners: less(corners), from: 0, to: 1e9 }))],
       kerbs: this.kerbs.map((kerb) => less([[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])),
       sensors: this.boxes.length + this.kerbs.length === 0 ? [] : this.rows("car.ultrasonic.mounts", ["x", "y", "yaw"])
         .map((mount, i) => ({ signal: `vehicle.ultrasonic[${i + 1}]`, x: mount.x, y: mount.y, heading: mount.yaw, half, range })),
@@ -126,9 +126,9 @@ class Situation {
 
   // The scenario with its changes, as `apa run` reads it.
   yaml() {
-    const lines = [`name: ${this.data.name}-live`, `base: ${this.data.source || this.data.name}`];
+    const lines = [`name: ${this.data.name}-live`, `extends: ${this.data.source || this.data.name}`];
     if (this.data.title) lines.push(`title: ${JSON.stringify(this.data.title)}`);
-    const own = { ...this.data.changed };
+    const own = { ...this.data.overrides };
     for (const [name, value] of Object.entries(this.changes)) Object.assign(own, this.withArray(name), { [name]: this.written(name, value) });
     const owners = ["car", "target", "slot", "vehicle", "controller"];
     if ("car" in own && Object.keys(own).some((key) => key.startsWith("car."))) { own["car.base"] = own.car; delete own.car; }

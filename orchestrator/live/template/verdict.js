@@ -67,26 +67,26 @@ function numbersOf(row, situation, table) {
   }
   found.duration = row[1] / 1e9;
   // Polygons are not looked at here: with them it is not known whether the car touches anything.
-  found.penetration = situation.data.polygons.length ? NaN : Math.max(0, -found.min_clearance);
+  found.penetration = situation.data.obstacles.length ? NaN : Math.max(0, -found.min_clearance);
   const pose = AXES.map((axis) => found[`final.${axis}`]), { target, slot, car } = situation, none = [NaN, NaN, NaN];
   const errors = target ? inFrame(pose, target) : none;
   ["longitudinal", "lateral", "heading"].forEach((name, i) => { found[`final.${name}_error`] = errors[i]; });
-  found["final.slot_margin"] = slot ? slotMargin(pose, slot, car) : NaN;
+  found["final.outline_margin"] = slot ? slotMargin(pose, slot, car) : NaN;
   [found["final.kerb_nearest"], found["final.kerb_farthest"]] = kerbDistances(pose, kerbsAtSlot(situation), car);
   return found;
 }
 
 // Whether there is anything to touch: orchestrator/verdict/contact.py.
-const hasScene = (situation) => situation.data.polygons.length + situation.kerbs.length > 0 || situation.rows("scene.boxes", BOX).some((box) => box.length > 0);
+const hasScene = (situation) => situation.data.obstacles.length + situation.kerbs.length > 0 || situation.rows("scene.boxes", BOX).some((box) => box.length > 0);
 
 // Each requirement that is asked of the run, and how it stands against it.
 function checksOf(row, numbers, situation) {
-  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0, scene: hasScene(situation) };
+  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.obstacles.length > 0, scene: hasScene(situation) };
   return situation.data.limits.filter((limit) => !limit.where || has[limit.where]).map((limit) => {
     const value = limit.number ? numbers[limit.signal] : limit.measure < 0 ? NaN : row[HEAD + limit.measure];
     const never = limit.first >= 0 && Number.isNaN(row[HEAD + limit.first]);
     const margin = MARGIN[limit.condition](value, limit.limit);
-    return { ...limit, value, margin, judged: limit.number || limit.measure >= 0, never, passed: never ? limit.ifNever === "pass" : margin >= 0 };
+    return { ...limit, value, margin, evaluated: limit.number || limit.measure >= 0, never, passed: never ? limit.ifNever === "pass" : margin >= 0 };
   });
 }
 
@@ -97,7 +97,7 @@ function stateNames(models, signal) {
   return found && found[7] ? model.states[found[7]] : {};
 }
 
-const CONTACT_ID = "free of contact"; // orchestrator/limits/contact-free.yaml
+const CONTACT_ID = "free of contact"; // orchestrator/requirements/contact-free.yaml
 
 const stateName = (names, value) => (Number.isFinite(value) ? names[value] ?? String(value) : "nan");
 
@@ -122,10 +122,10 @@ function outcomeOf(row, checks, situation) {
   if (!Number.isFinite(mode)) return [missed, `the controller has no output ${ending.mode.split(".").slice(1).join(".")}, of which ${ending.word} says that it is done`];
   if (ending.failed.includes(mode)) return ["failed", stateName(stateNames(situation.models, ending.reason), last(ending.reason)).toLowerCase()];
   const name = stateName(stateNames(situation.models, ending.mode), mode).toLowerCase();
-  if (ending.over.includes(mode)) return [missed, name];
-  if (!ending.done.includes(mode)) return [missed, `stop time reached in ${name}`];
-  const why = whyNot(speed, checks.filter((check) => check.judged && check.required && !check.passed), ending.still);
-  const left = checks.filter((check) => !check.judged).map((check) => check.id).join(", ");
+  if (ending.ended.includes(mode)) return [missed, name];
+  if (!ending.succeeded.includes(mode)) return [missed, `stop time reached in ${name}`];
+  const why = whyNot(speed, checks.filter((check) => check.evaluated && check.required && !check.passed), ending.still);
+  const left = checks.filter((check) => !check.evaluated).map((check) => check.id).join(", ");
   return why ? [missed, why] : [success, left ? `all checks passed except those not evaluated here: ${left}` : "all checks passed"];
 }
 

@@ -9,7 +9,7 @@ function card(title, content, open = true) {
 }
 
 function checksCard(run, tag) {
-  const rows = run.checks.map((check) => row([check.judged ? pill(check.passed, check.required) : element("span", { class: "pill warn" }, "not evaluated"), check.id, numberCell(check.value_text), numberCell(check.limit_text),
+  const rows = run.checks.map((check) => row([check.evaluated ? pill(check.passed, check.required) : element("span", { class: "pill warn" }, "not evaluated"), check.id, numberCell(check.value_text), numberCell(check.limit_text),
     numberCell(check.margin_text), moment(check.t), check.source]));
   const missed = run.checks.filter((check) => !check.passed).length;
   const title = `Checks${tag}: ${run.checks.length - missed} of ${run.checks.length} passed`;

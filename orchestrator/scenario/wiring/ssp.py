@@ -25,7 +25,7 @@ def ssp_scenario(path: Path) -> dict[str, Any]:
     made: dict[str, Any] = {**content, **{key: value for key, value in times.items() if value is not None}}
     if all(name in told for name in TARGET) and "vehicle" in system.components:
         return {**made, "target": {name.partition(".")[2]: told[name] for name in TARGET}}
-    return {**made, "task": "run", "limits": []}
+    return {**made, "task": "open_loop", "requirements": []}
 
 
 def ssp_system(path: Path) -> dict[str, Any]:
@@ -48,7 +48,7 @@ def ssp_system(path: Path) -> dict[str, Any]:
         f"{owner}.{name}": {"value": text} for owner, given in system.inputs.items() for name, text in given.items()
     }
     return {
-        "slaves": slaves,
+        "components": slaves,
         "connections": {**as_written(system), **values},
         "by_name": False,
         "units": {

@@ -25,7 +25,7 @@ ROLES: dict[str, tuple[str, ...]] = {
     "clearance": ("vehicle.clearance",),
     "mode": ("controller.phase",),
     "reason": ("controller.reason",),
-    "shifts": ("controller.shifts",),
+    "manoeuvres": ("controller.manoeuvres",),
     "request": ("controller.steering_wheel_request",),
     "prompt": ("controller.prompt",),
 }
@@ -202,7 +202,7 @@ class SystemText(_SystemPart):
 
     ssp: str = ""
     """A system made elsewhere, whose slaves, connections and parameters are taken over."""
-    slaves: dict[str, Entry] = {}
+    components: dict[str, Entry] = {}
     """Name -> FMU. ``vehicle`` and ``controller`` are ours if nothing else is said."""
     connections: dict[str, Feed] = {}
     """Inputs -> what feeds them."""
@@ -224,7 +224,7 @@ class SystemText(_SystemPart):
     def _written(cls, given: Any) -> Any:
         if not isinstance(given, Mapping):
             return given
-        slaves = given.get("slaves")
+        slaves = given.get("components")
         names = frozenset({*MODELS, *(map(str, slaves) if isinstance(slaves, Mapping) else ())})
         made = dict(given)
         for key in ("connections", "roles"):
@@ -235,11 +235,11 @@ class SystemText(_SystemPart):
 
     @model_validator(mode="after")
     def _names(self) -> "SystemText":
-        for name in self.slaves:
+        for name in self.components:
             if SLAVE.match(name) is None:
                 raise BadInput("is no name for a slave: write letters, digits and _", key=f"slaves.{name}")
         if not self.places:
-            raise BadInput("there is no slave left", key="slaves")
+            raise BadInput("there is no slave left", key="components")
         for feed in (*self.connections.values(), *self.roles.values()):
             for frame in (feed.into, feed.out_of):
                 if frame is not None and frame not in self.frames:
@@ -249,10 +249,10 @@ class SystemText(_SystemPart):
 
     def files(self) -> dict[str, str]:
         """Return slave -> what its file is called, for those that are not ours."""
-        return {name: item.file for name, item in self.slaves.items() if item.file and item.file != NO_FILE}
+        return {name: item.file for name, item in self.components.items() if item.file and item.file != NO_FILE}
 
     @property
     def places(self) -> list[str]:
         """Return the names of the slaves in their order: vehicle and controller first, as far as they are there."""
-        gone = {name for name, item in self.slaves.items() if item.file == NO_FILE}
-        return [name for name in dict.fromkeys([*MODELS, *self.slaves]) if name not in gone]
+        gone = {name for name, item in self.components.items() if item.file == NO_FILE}
+        return [name for name in dict.fromkeys([*MODELS, *self.components]) if name not in gone]

@@ -28,7 +28,7 @@ from orchestrator.sweep.page.statistics import (
 )
 from orchestrator.sweep.table import Table
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.verdict.confidence import wilson
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
@@ -39,11 +39,18 @@ BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subti
 </div></main>
 <footer>{foot}</footer>
 """
-WORST = 12
-HISTOGRAMS = ("final.lateral_error", "final.heading_error", "duration", "shifts", "steering_effort", "min_clearance")
+WORST_ROWS = 12
+HISTOGRAMS = (
+    "final.lateral_error",
+    "final.heading_error",
+    "duration",
+    "manoeuvres",
+    "steering_travel",
+    "min_clearance",
+)
 REPLAYS = "row-{}"
 """Where `apa replay` puts a row, beside the table."""
-NEVER = 1e8
+NO_OBSTACLE_DISTANCE = 1e8
 """A clearance beyond this [m]: there was nothing in the scene."""
 escape = html.escape
 
@@ -153,7 +160,9 @@ def _histograms(table: Table) -> str:
         if name in table.names():
             factor, unit = for_people(RESULTS[name].unit)
             values = np.asarray(table.column(name), dtype=np.float64) * factor
-            if not np.isfinite(values).any() or (name == "min_clearance" and float(values.min()) >= NEVER):
+            if not np.isfinite(values).any() or (
+                name == "min_clearance" and float(values.min()) >= NO_OBSTACLE_DISTANCE
+            ):
                 continue
             caption = f"<figcaption>{escape(name)} <span class='quiet'>[{unit}]</span></figcaption>"
             figures.append(f"<figure>{caption}{histogram(values, good, name, unit, word(table))}</figure>")
@@ -187,7 +196,7 @@ def _influences(table: Table) -> str:
 def _worst(table: Table) -> str:
     rows = []
     keys = varied(table)
-    for number in worst(table, WORST):
+    for number in worst(table, WORST_ROWS):
         row = table.row(number)
         replay = table.path.parent / REPLAYS.format(number) / "report.html"
         command = f"<code>apa replay {escape(table.path.name)} --row {number}</code>"
@@ -198,7 +207,7 @@ def _worst(table: Table) -> str:
                 f"{_pill(row['outcome'])} {escape(row['reason'])}",
                 escape(deciding_limit(table, number)),
                 _finite("{:+.1f} cm", 100.0 * row["final.lateral_error"]),
-                _finite("{:+.2f} deg", row["final.heading_error"] / DEGREE),
+                _finite("{:+.2f} deg", row["final.heading_error"] / RAD_PER_DEGREE),
                 f"{row['duration']:.1f} s",
                 link + command,
                 *(_value(table, key, row[key]) for key in keys),

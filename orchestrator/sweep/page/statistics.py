@@ -12,7 +12,7 @@ from orchestrator.scenario.scenario import DONE, SUCCESS, Scenario
 from orchestrator.sweep.study.study_file import Axes
 from orchestrator.sweep.table import Table
 from orchestrator.sweep.verdict import RESULTS
-from orchestrator.text.quantities import DEGREE
+from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.text.readable import readable
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.confidence import wilson
@@ -20,7 +20,7 @@ from orchestrator.verdict.limit_text import required_text
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""
-BINS = 24
+HISTOGRAM_BINS = 24
 
 
 class Axis(NamedTuple):
@@ -60,7 +60,7 @@ class Influence(NamedTuple):
 
 def for_people(unit: str) -> tuple[float, str]:
     """Return (factor, unit) in which people read an SI unit: degrees for radians."""
-    return (1.0 / DEGREE, unit.replace("rad", "deg")) if unit.startswith("rad") else (1.0, unit)
+    return (1.0 / RAD_PER_DEGREE, unit.replace("rad", "deg")) if unit.startswith("rad") else (1.0, unit)
 
 
 def varied(table: Table) -> list[str]:
@@ -109,7 +109,7 @@ def deciding_limit(table: Table, number: int) -> str:
     """
     row = table.row(number)
     worst_share, text = 0.0, ""
-    for limit in Scenario(**table.job.scenario).limits:
+    for limit in Scenario(**table.job.scenario).requirements:
         value = row.get(limit.signal)
         if not limit.required or value is None or isinstance(limit.limit, str):
             continue
@@ -143,8 +143,8 @@ def axis(table: Table, name: str) -> Axis:
         first = ends[0] if len(different) == 1 else 2.0 * different[0] - middle[0]
         last = ends[1] if len(different) == 1 else 2.0 * different[-1] - middle[-1]
         return Axis(name, unit, text, np.concatenate([[first], middle, [last]]), labels, cell)
-    edges = np.linspace(different[0], different[-1], BINS + 1)
-    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, BINS - 1)
+    edges = np.linspace(different[0], different[-1], HISTOGRAM_BINS + 1)
+    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, HISTOGRAM_BINS - 1)
     return Axis(name, unit, text, edges, [f"{edge:.4g}" for edge in 0.5 * (edges[1:] + edges[:-1])], cell)
 
 

@@ -12,7 +12,7 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import SCENARIO_FIELDS, TRUE_FIELDS, TRUE_OWNERS, Field, find_field
 from orchestrator.sweep.study.design import Design
 
-OWN = {"name", "title", "description", "source", "base", "car", "file", "changed"}
+OWN = {"name", "title", "description", "source", "extends", "car", "file", "overrides"}
 """Keys of a scenario in which runs may differ without any effect."""
 
 
@@ -42,7 +42,7 @@ def design_of(cases: Iterable[LabelledScenario]) -> tuple[Scenario, Design]:
     values = np.column_stack([*columns.values()]) if columns else np.empty((len(scenarios), 0))
     seeds = np.array([scenario.seed for scenario in scenarios])
     words = {key: np.array([item[key] for item in labels]) for key in labels[0]}
-    return shared.model_copy(update={"car": None, "base": None}), Design(fields, values, seeds, words)
+    return shared.model_copy(update={"car": None, "extends": None}), Design(fields, values, seeds, words)
 
 
 def with_samples(design: Design, samples: Mapping[Field, Array]) -> Design:
@@ -71,7 +71,7 @@ def _numbers(scenarios: Iterable[Scenario]) -> dict[str, list[float]]:
         for variable in variables(model.params):
             values = [float(own.get(variable.name, variable.start)) for own in given]
             found[f"{owner}.{variable.name}"] = values
-        found[f"every.{owner}"] = [float(item.every.get(owner, 1)) for item in items]
+        found[f"decimation.{owner}"] = [float(item.decimation.get(owner, 1)) for item in items]
     for owner in TRUE_OWNERS:
         if getattr(items[0], owner) is not None:
             for name in type(getattr(items[0], owner)).model_fields:

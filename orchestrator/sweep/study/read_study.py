@@ -6,7 +6,7 @@ from typing import Any
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.load_scenario import limits_of
+from orchestrator.scenario.load_scenario import requirements_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.session.foreign import Foreign, load_fitting
 from orchestrator.sweep.fields import SCENARIO_FIELDS
@@ -18,7 +18,7 @@ from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import scalar
 from orchestrator.verdict.measures import Measure
 
-PROBE = 1_000_003
+PROBE_SEED = 1_000_003
 """A seed that no scenario has, to find out what follows the seed."""
 
 
@@ -62,18 +62,19 @@ def bind(file: StudyFile) -> Study:
         for how, signal in item.model_dump(exclude_none=True).items()
     }
     within = {
-        name: [Requirement(**item) for item in limits_of(given, Path.cwd())] for name, given in file.within.items()
+        name: [Requirement(**item) for item in requirements_of(given, Path.cwd())]
+        for name, given in file.within.items()
     }
     return Study(scenario, design, content, _seeded(file.scenario, sets, design), measures, within)
 
 
 def _seeded(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
     """Return the parameters that take the run's seed: those that follow the scenario's."""
-    probed = load_fitting(scenario, [*sets, f"seed={PROBE}"], Foreign()).scenario
+    probed = load_fitting(scenario, [*sets, f"seed={PROBE_SEED}"], Foreign()).scenario
     varied = {field.key for field in design.fields}
     return [
         (owner, variable.name, place)
         for owner, model in probed.models.items()
         for place, variable in enumerate(variables(model.params))
-        if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
+        if getattr(probed, owner).get(variable.name) == PROBE_SEED and f"{owner}.{variable.name}" not in varied
     ]

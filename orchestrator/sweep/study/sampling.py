@@ -74,7 +74,7 @@ def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None
     if np.any(stops < steps):
         raise BadInput("a run has a stop_time under its step", key="runs")
     for owner in MODELS:
-        if np.any(steps * columns.get(f"every.{owner}", scenario.every.get(owner, 1)) > LONGEST_STEP):
+        if np.any(steps * columns.get(f"decimation.{owner}", scenario.decimation.get(owner, 1)) > LONGEST_STEP):
             raise BadInput(f"a run steps the {owner} by more than {LONGEST_STEP:g} s", key="runs")
 
 

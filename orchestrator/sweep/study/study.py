@@ -26,7 +26,7 @@ class Derived(NamedTuple):
     """Further columns, of words, and what they mean."""
 
 
-class Goal(NamedTuple):
+class Objective(NamedTuple):
     """A requirement with the margin of each run: what a search of the study's ranges tries to break."""
 
     name: str
@@ -58,7 +58,7 @@ class Study(NamedTuple):
     derived: Derived = NOTHING
     space: Space | None = None
     """What its numbers are made of, where a search may choose others."""
-    goals: Sequence[Goal] = ()
+    goals: Sequence[Objective] = ()
     """What a search tries to break if nothing else is said, the first one first."""
 
     @property

@@ -11,7 +11,7 @@ from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.yaml_file import explain, read_mapping
 
 MOST_RUNS = 100_000_000
-SHIPPED = Path(__file__).parents[2] / "studies"
+SHIPPED_STUDIES = Path(__file__).parents[2] / "studies"
 
 
 class _StudyPart(BaseModel):
@@ -125,7 +125,7 @@ class StudyFile(_StudyPart):
 
 def study_names() -> list[str]:
     """Return the names of the shipped studies, sorted."""
-    return sorted(path.stem for path in SHIPPED.glob("*.yaml"))
+    return sorted(path.stem for path in SHIPPED_STUDIES.glob("*.yaml"))
 
 
 def load_study(name: str, others: Iterable[str] = ()) -> StudyFile:
@@ -151,7 +151,7 @@ def _find(name: str, known: list[str]) -> Path:
         if not path.is_file():
             raise BadInput("no such file", file=name)
         return path
-    path = SHIPPED / f"{name}.yaml"
+    path = SHIPPED_STUDIES / f"{name}.yaml"
     if not path.is_file():
         hint = suggestion_or_choices(name, known)
         raise BadInput(f"no study of this name{hint}", key=name)

@@ -27,7 +27,7 @@ class Output(NamedTuple):
     speed_control_active: Annotated[bool, Signal("1", "drives")] = True
     speed_request: Annotated[float, Signal("m/s", "requested speed, reverse negative")] = 0.0
     phase: Annotated[int, Signal("1", "how far it is")] = 0
-    shifts: Annotated[int, Signal("1", "manoeuvres")] = 1
+    manoeuvres: Annotated[int, Signal("1", "manoeuvres")] = 1
 
 
 class State(NamedTuple):

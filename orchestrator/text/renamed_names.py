@@ -1,0 +1,110 @@
+"""Names that scenarios, studies, tests and commands had before, and what they are called now: one table for all.
+
+An old name is rejected, and the message gives the new one; ``apa migrate`` rewrites files by the same table.
+"""
+
+SCENARIO_KEYS = {
+    "base": "extends",
+    "car.base": "car.extends",
+    "ending": "stop_condition",
+    "ending.done": "stop_condition.succeeded",
+    "ending.over": "stop_condition.ended",
+    "every": "decimation",
+    "expect": "expected_outcome",
+    "limits": "requirements",
+    "polygons": "obstacles",
+    "system.slaves": "system.components",
+    "target.of": "target.reference_point",
+}
+"""Keys of a scenario, nested ones with dots."""
+VARIABLES = {
+    "controller.apa.end.miss_heading": "controller.apa.end.final_heading_error",
+    "controller.apa.end.miss_lateral": "controller.apa.end.final_lateral_error",
+    "controller.apa.plan.shifts": "controller.apa.plan.manoeuvres",
+    "controller.apa.guard.patience": "controller.apa.guard.driver_response_timeout",
+    "controller.choice": "controller.driver_selection",
+    "controller.hsic.gain.creep": "controller.hsic.gain.min_speed",
+    "controller.hsic.gain.fast": "controller.hsic.gain.max_speed",
+    "controller.hsic.gain.slow": "controller.hsic.gain.corrective_speed",
+    "controller.hsic.gain.steepest": "controller.hsic.gain.max_approach_heading",
+    "controller.hsic.gain.strengthened": "controller.hsic.gain.gain_boost",
+    "controller.hsic.threshold.retreat": "controller.hsic.threshold.retry_distance",
+    "controller.hsic.threshold.wheel": "controller.hsic.threshold.steering_angle_reached",
+    "controller.limit.patience": "controller.limit.driver_response_timeout",
+    "controller.limit.shifts": "controller.limit.manoeuvres",
+    "controller.limit.wheel_fault": "controller.limit.steering_fault_debounce",
+    "controller.limit.wheel_off": "controller.limit.steering_tracking_error",
+    "controller.shifts": "controller.manoeuvres",
+    "controller.threshold.lost_lateral": "controller.threshold.abort_lateral_error",
+    "controller.threshold.miss_heading": "controller.threshold.final_heading_error",
+    "controller.threshold.miss_lateral": "controller.threshold.final_lateral_error",
+    "controller.threshold.wheel": "controller.threshold.steering_angle_reached",
+    "controller.told": "controller.external_slot",
+    "controller.zhang2022.mpc.cap": "controller.zhang2022.mpc.max_iterations",
+    "controller.zhang2022.mpc.softness": "controller.zhang2022.mpc.slack_weight",
+    "vehicle.driver.grab_angle": "vehicle.driver.steering_override_angle",
+    "vehicle.driver.grab_time": "vehicle.driver.steering_override_time",
+    "vehicle.driver.obeys_direction": "vehicle.driver.complies_with_direction",
+    "vehicle.driver.obeys_slow_down": "vehicle.driver.complies_with_slow_down",
+    "vehicle.driver.obeys_stop": "vehicle.driver.complies_with_stop",
+    "vehicle.driver.wobble": "vehicle.driver.speed_oscillation_amplitude",
+    "vehicle.driver.wobble_period": "vehicle.driver.speed_oscillation_period",
+    "vehicle.odometry.perfect": "vehicle.odometry.ideal",
+    "vehicle.person": "vehicle.manual",
+    "vehicle.person.drives": "vehicle.manual.active",
+    "vehicle.road.bank": "vehicle.road.cross_slope",
+    "vehicle.road.slope": "vehicle.road.grade",
+    "vehicle.steering.stuck_time": "vehicle.steering.fault_time",
+}
+"""Parameters and signals; a group stands for all that is in it."""
+METRICS = {
+    "final.slot_margin": "final.outline_margin",
+    "shifts": "manoeuvres",
+    "standstill_steering": "dry_steering_count",
+    "steering_effort": "steering_travel",
+}
+"""Metrics of a run, as requirements name them."""
+VALUES = {
+    "kind": {"drop": "dropout", "freeze": "stuck_at_last"},
+    "task": {"run": "open_loop"},
+    "where": {"polygons": "obstacles"},
+}
+"""Key -> its values; ``kind`` is that of a fault."""
+OPTIONS = {
+    "--corpus": "--regression",
+    "--every": "--stride",
+    "--first": "--offset",
+    "--picture": "--figure",
+    "--workers": "--jobs",
+}
+"""Options of commands."""
+API = {"must_be": "assert_outcome", "must_meet": "assert_requirements"}
+"""Methods of the runs that the fixtures of the pytest plugin return."""
+DOTTED_NAMES = SCENARIO_KEYS | VARIABLES | METRICS
+
+
+def renamed(path: str) -> str:
+    """Return a dotted name as it is called now; itself where it, and all that it is in, was never called otherwise.
+
+    Old and new names have equally many parts.
+    """
+    parts = path.split(".")
+    for count in range(len(parts), 0, -1):
+        new = DOTTED_NAMES.get(".".join(parts[:count]))
+        if new is not None:
+            return ".".join([new, *parts[count:]])
+    return path
+
+
+def new_name(word: str, prefix: str = "") -> str:
+    """Return what the unknown ``word``, which may lack its owner ``prefix``, is called now; empty if nothing is known.
+
+    A name without its owner is found if one old name ends with it.
+    """
+    for full in (prefix + word, word):
+        if renamed(full) != full:
+            return renamed(full)
+    if word in OPTIONS:
+        return OPTIONS[word]
+    ends = {new for old, new in DOTTED_NAMES.items() if old.endswith(f".{word}")}
+    return ends.pop() if len(ends) == 1 else ""

@@ -1,0 +1,173 @@
+"""Old names are rejected in one line with the new one, and ``apa migrate`` rewrites files and touches no more."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from apa_cosim.testing import ClosedLoopRun, OpenLoopRun
+from modelkit.variables import variables
+from orchestrator.cli import main
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.study.study_file import load_study
+from orchestrator.text.errors import BadInput
+from orchestrator.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, new_name, renamed
+from orchestrator.verdict.numbers import NUMBERS
+
+OLD = """\
+# a comment of mine
+base: guo2015-case4
+every: {controller: 2}   # slower
+limits:
+  - house
+  - {id: few, signal: shifts, max: 8, source: mine, where: slot}
+ending: {done: [PARKED], over: []}
+expect: parked
+vehicle:
+  driver: {"wobble": 0.1, obeys_stop: true}
+  odometry.perfect: false
+controller: {limit.wheel_off: 0.2, threshold: {wheel: 2 deg}}
+faults: [{signal: vehicle.person.brake, kind: freeze, start: 100}]
+"""
+NEW = """\
+# a comment of mine
+extends: guo2015-case4
+decimation: {controller: 2}   # slower
+requirements:
+  - house
+  - {id: few, signal: manoeuvres, max: 8, source: mine, where: slot}
+stop_condition: {succeeded: [PARKED], ended: []}
+expected_outcome: parked
+vehicle:
+  driver: {"speed_oscillation_amplitude": 0.1, complies_with_stop: true}
+  odometry.ideal: false
+controller: {limit.steering_tracking_error: 0.2, threshold: {steering_angle_reached: 2 deg}}
+faults: [{signal: vehicle.manual.brake, kind: stuck_at_last, start: 100}]
+"""
+STUDY = """\
+scenario: guo2015-case3-105
+set: {every.controller: 2, vehicle.driver.wobble_period: 2}
+runs:
+  grid: {"vehicle.road.slope, vehicle.road.bank": [0, 0.01]}
+  monte_carlo: {n: 3, vehicle.driver.obeys_stop: {choice: [true]}}
+measures: {most: {last: controller.shifts}}
+"""
+TEST = """\
+model: vehicle
+stop_time: 1
+inputs: {person.drives: true}
+expect: [{id: a, signal: person.brake, always: {max: 1}}]
+"""
+
+
+def migrated(folder: Path, text: str) -> str:
+    file = folder / "old.yaml"
+    file.write_bytes(text.encode())
+    assert main(["migrate", str(file)]) == 0
+    return file.read_bytes().decode()
+
+
+def test_a_scenario_keeps_all_but_the_old_names(tmp_path: Path) -> None:
+    assert migrated(tmp_path, OLD) == NEW
+    assert migrated(tmp_path, OLD.replace("\n", "\r\n")) == NEW.replace("\n", "\r\n")
+    assert migrated(tmp_path, NEW) == NEW
+    assert load_scenario(str(tmp_path / "old.yaml")).decimation == {"controller": 2}
+
+
+def test_a_study_and_an_open_loop_test_are_rewritten(tmp_path: Path) -> None:
+    study = yaml.safe_load(migrated(tmp_path, STUDY))
+    assert set(study["set"]) == {"decimation.controller", "vehicle.driver.speed_oscillation_period"}
+    assert set(study["runs"]["grid"]) == {"vehicle.road.grade, vehicle.road.cross_slope"}
+    assert study["measures"] == {"most": {"last": "controller.manoeuvres"}}
+    assert load_study(str(tmp_path / "old.yaml")).name == "old"
+    test = yaml.safe_load(migrated(tmp_path, TEST))
+    assert (test["inputs"], test["expect"][0]["signal"]) == ({"manual.active": True}, "manual.brake")
+
+
+def test_output_and_check_leave_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "old.yaml"
+    file.write_text(OLD)
+    assert main(["migrate", str(file), "--output", "-"]) == 0
+    assert capsys.readouterr().out == NEW
+    assert main(["migrate", str(file), "--check"]) == 1
+    assert "old.yaml:2: base -> extends" in capsys.readouterr().err
+    assert main(["migrate", str(file), "--output", str(tmp_path / "new.yaml")]) == 0
+    assert (file.read_text(), (tmp_path / "new.yaml").read_text()) == (OLD, NEW)
+    assert main(["migrate", str(tmp_path / "new.yaml"), "--check"]) == 0
+
+
+def test_old_and_new_name_together_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "both.yaml"
+    file.write_text("limits: []\nrequirements: []\n")
+    assert main(["migrate", str(file)]) == 2
+    assert "requirements: has the old and the new name of this key" in capsys.readouterr().err
+    assert file.read_text() == "limits: []\nrequirements: []\n"
+
+
+@pytest.mark.parametrize(
+    ("sets", "new"),
+    [
+        ("every.controller=2", "decimation.controller"),
+        ("limits=[]", "requirements"),
+        ("ending.done=[PARKED]", "stop_condition.succeeded"),
+        ("target.of=left", "target.reference_point"),
+        ("task=run", "open_loop"),
+        ("faults=[{signal: vehicle.speed, kind: drop}]", "dropout"),
+        ("requirements=[{id: a, signal: speed, max: 1, where: polygons, source: x}]", "obstacles"),
+        ("vehicle.driver={wobble: 0.1}", "vehicle.driver.speed_oscillation_amplitude"),
+        ("controller.told.kind=1", "controller.external_slot.kind"),
+    ],
+)
+def test_an_old_name_is_answered_with_the_new_one(sets: str, new: str) -> None:
+    with pytest.raises(BadInput) as error:
+        load_scenario("guo2015-case4", [sets])
+    assert f"it is called {new} now" in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("words", "new"),
+    [
+        (["sweep", "guo2015-trial", "--every", "9"], "--stride now"),
+        (["sweep", "guo2015-trial", "--workers=1"], "--jobs now"),
+        (["hunt", "guo2015-trial"], "falsify"),
+        (["list", "systems"], "controllers"),
+    ],
+)
+def test_an_old_option_or_command_is_answered_with_the_new_one(
+    words: list[str], new: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(words)
+    assert end.value.code == 2
+    assert new in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("cls", [ClosedLoopRun, OpenLoopRun])
+def test_the_runs_of_the_fixtures_name_the_new_methods(cls: type) -> None:
+    with pytest.raises(AttributeError, match="assert_requirements"):
+        getattr(object.__new__(cls), "must_meet")  # noqa: B009 - mypy knows that it is not there
+
+
+def test_the_table_holds_names_that_exist_and_no_old_one_does() -> None:
+    names = {
+        f"{owner}.{item.name}"
+        for owner, model in MODELS.items()
+        for cls in (model.params, model.inputs, model.outputs)
+        for item in variables(cls)
+    }
+    for old, new in VARIABLES.items():
+        assert old.count(".") == new.count(".")
+        assert any(name == new or name.startswith(f"{new}.") for name in names) or "preview" in new, new
+        assert not any(name == old or name.startswith(f"{old}.") for name in names), old
+    assert set(METRICS.values()) <= NUMBERS.keys()
+    assert not METRICS.keys() & NUMBERS.keys()
+    top = {(old, new) for old, new in SCENARIO_KEYS.items() if "." not in old}
+    assert {new for _, new in top} <= Scenario.model_fields.keys()
+    assert not {old for old, _ in top} & Scenario.model_fields.keys()
+    assert renamed("vehicle.person.lever") == "vehicle.manual.lever"
+    assert new_name("shifts") == "manoeuvres"
+    assert new_name("wobble") == "vehicle.driver.speed_oscillation_amplitude"
+    assert new_name("nothing") == ""

@@ -8,7 +8,7 @@ than the sensors reach. But where the vehicle stands is free, whatever was taken
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.frames import point_from_frame
+from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.geometry.outline_extent import extent_within
 from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
@@ -31,6 +31,8 @@ BEHIND_VEHICLE = 0.6
 SLOT_QUADS = 7
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
+INSIDE_MARGIN = 0.3
+"""What is inside a gap lies at most this [m] outside its edges: they are known to 0.1 m, odometry drifts by 0.2 m."""
 START_CLEARANCE = 0.05
 """What stands nearer [m] than this to a standing vehicle is taken to stand so far: else no path could begin there."""
 
@@ -125,6 +127,18 @@ def away_from_vehicle(landmark: Landmark, outline: VehicleOutline, vehicle: Pose
     length = max(math.sqrt(nx * nx + ny * ny), START_CLEARANCE)
     shift = (START_CLEARANCE - distance) / length
     return landmark._replace(x=landmark.x + shift * nx, y=landmark.y + shift * ny)
+
+
+def without_inside(landmark: Landmark, slot: SlotCandidate) -> Landmark:
+    """Return a landmark, or none if all of it lies inside the gap: the slot's corrected ends and depth stand for it."""
+    if landmark.type == LandmarkType.NONE:
+        return landmark
+    for point in (start_point(landmark), end_point(landmark)):
+        at = point_to_frame(point.x, point.y, slot.row.frame)
+        beyond = at.x < slot.behind.end - INSIDE_MARGIN or at.x > slot.ahead.start + INSIDE_MARGIN
+        if beyond or slot.row.side * at.y < slot.front - INSIDE_MARGIN:
+            return landmark
+    return Landmark()
 
 
 def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) -> Vertex:

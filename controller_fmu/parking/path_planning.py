@@ -7,10 +7,17 @@ from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.monitor.collision_monitor import landmark_distance
-from controller_fmu.parking.obstacle_map import KnownEchoes, VehiclePlace, away_from_vehicle, obstacle_map
+from controller_fmu.parking.obstacle_map import (
+    KnownEchoes,
+    VehiclePlace,
+    away_from_vehicle,
+    obstacle_map,
+    without_inside,
+)
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
+    GOAL_BLOCKED,
     PLANNED,
     PLANNING,
     TOO_MANY_EDGES,
@@ -33,7 +40,7 @@ FRONT_SENSORS = (1, 2)
 
 def begin_plan(memory: ParkingMemory) -> ParkingMemory:
     """Return the memory with a new plan due; the first sample at standstill makes its request."""
-    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False))
+    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False, is_relaxed=False))
 
 
 def continue_plan(
@@ -56,6 +63,8 @@ def continue_plan(
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
+    if status == GOAL_BLOCKED and not plan.is_relaxed:
+        return memory._replace(plan=memory.plan._replace(is_relaxed=True, steps=0, plans=plan.plans - 1))
     known = memory.perception.remembered[-1].is_present
     reason = Reason.BLOCKED if known else Reason.NO_PATH
     reason = Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason
@@ -96,6 +105,8 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
     beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
+    if memory.plan.is_relaxed:
+        beside = tuple(without_inside(beside[number], slot) for number in range(LANDMARKS))
     perception = memory.perception
     obstacles = obstacle_map(
         beside,

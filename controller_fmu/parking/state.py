@@ -43,6 +43,8 @@ class PlanProgress(NamedTuple):
     """Done for the request; 0: none is in hand."""
     plans: int = 0
     is_found: bool = False
+    is_relaxed: bool = False
+    """The goal was blocked by what was measured inside the gap: planned between the slot's own limits alone."""
     is_final: bool = False
     """No plan brings the vehicle nearer to its goal, and it stands in the slot."""
 

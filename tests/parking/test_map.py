@@ -171,3 +171,20 @@ def test_what_is_in_the_blind_zone_is_kept() -> None:
     for _ in range(20):
         local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, Pose(), CAR.ultrasonic, PARAMS)
     assert local_map.landmarks[0].type == LandmarkType.POINT
+
+
+def test_a_narrow_body_that_came_between_two_cones_is_kept() -> None:
+    """A hitch in the middle of the bumper is outside both cones nearer than 0.4 m: without an echo it may be there."""
+    surface = Landmark(
+        LandmarkType.SEGMENT, -0.95, 0.0, math.pi / 2, xx=1e-4, hh=1e-3, start=-0.25, end=0.25, confirmations=9
+    )
+    for heading in (math.pi / 2, -math.pi / 2):
+        landmarks = (surface._replace(heading=heading),) + (Landmark(),) * (LANDMARKS - 1)
+        local_map = LandmarkMap(landmarks=landmarks, begun=True)
+        for _ in range(20):
+            local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, Pose(), CAR.ultrasonic, PARAMS)
+        assert local_map.landmarks[0].type == LandmarkType.SEGMENT
+        away = Pose(1.5, 0.0, 0.0)
+        for _ in range(20):
+            local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, away, CAR.ultrasonic, PARAMS)
+        assert local_map.landmarks[0].type == LandmarkType.NONE, "from afar it must be heard"

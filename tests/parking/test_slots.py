@@ -6,8 +6,10 @@ import pytest
 
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.obstacle_map import without_inside
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, log_likelihood_ratio
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.params import SlotParams
@@ -80,3 +82,12 @@ def test_type_follows_from_what_was_seen_in_full() -> None:
     assert log_likelihood_ratio(row_of((1.5, 1.6), False)) == 0.0
     assert log_likelihood_ratio(row_of((3.9, 0.6), False)) > 2.3
     assert log_likelihood_ratio(row_of((20.0, 1.0), False)) == 0.0
+
+
+def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:
+    """A corner heard in a turn lay in the goal: the plan was refused although the slot was free."""
+    slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(8.4, -0.9, 0.0, 4.4, 1.8)], 3, 5.5)
+    inside = Landmark(LandmarkType.SEGMENT, 5.9, -0.5, 0.0, start=-0.2, end=0.2)
+    assert without_inside(inside, slot).type == LandmarkType.NONE
+    assert without_inside(inside._replace(y=1.0), slot) == inside._replace(y=1.0)
+    assert without_inside(inside._replace(end=2.0), slot).type == LandmarkType.SEGMENT

@@ -15,6 +15,7 @@ from controller_fmu.parking.map.landmark import (
     LandmarkType,
     along_of,
     end_point,
+    length_of,
     offset_of,
     offset_variance,
     start_point,
@@ -27,7 +28,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     predicted_range_to_point,
     predicted_range_to_segment,
 )
-from controller_fmu.parking.measurement.sensor import SensorPose
+from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from modelkit.geometry import NO_HIT
 
 NO_LANDMARK = -1
@@ -41,6 +42,9 @@ FACING_COS = 0.8
 """Cosine of the angle between a side's normal and the direction of its echo, at least: 37 deg, past the half cone."""
 OPEN_EXTENSION = 1.5
 """Beyond an open end echoes of the same line are expected for this far [m]: the range of monitored echoes."""
+BODY_BETWEEN = 1.0
+"""A segment shorter than this [m] may stand for a narrow body anywhere on it (a hitch): a sensor that sees part of it
+tells nothing, so what has come between two cones is kept."""
 WELL_IN_VIEW = 0.87
 """A point counts as surely in view within this fraction of the half cone: the mounting errs by some degrees."""
 
@@ -133,19 +137,29 @@ def with_open_ends_extended(landmark: Landmark) -> Landmark:
     return landmark._replace(start=start, end=end)
 
 
+def _is_all_in_view(landmark: Landmark, sensor: SensorPose) -> bool:
+    """Return whether both ends of a segment lie in a sensor's cone."""
+    a = start_point(landmark)
+    b = end_point(landmark)
+    return in_field_of_view(sensor, a.x, a.y) and in_field_of_view(sensor, b.x, b.y)
+
+
 def is_contradicted(
     landmark: Landmark, sensor: SensorPose, free_range: float, min_range: float, variance: float
 ) -> bool:
     """Return whether a landmark had to return an echo, but the first one is beyond ``free_range`` [m].
 
     Only where the predicted echo lies well inside the cone, beyond the blind zone and outside the gate; of a segment
-    only the side, since the corners may lie outside a narrower cone.
+    only the side, since the corners may lie outside a narrower cone, or all of it if it is short.
     """
     predicted = predict_range(sensor, landmark)
     if predicted.origin == EchoOrigin.OUT_OF_VIEW or predicted.origin == EchoOrigin.CONE_EDGE:
         return False
-    if landmark.type == LandmarkType.SEGMENT and predicted.origin != EchoOrigin.INTERIOR:
-        return False
+    if landmark.type == LandmarkType.SEGMENT:
+        is_short = length_of(landmark) < BODY_BETWEEN
+        tells = _is_all_in_view(landmark, sensor) if is_short else predicted.origin == EchoOrigin.INTERIOR
+        if not tells:
+            return False
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION
     sigma = math.sqrt(offset_variance(landmark, along) + variance + roughness)

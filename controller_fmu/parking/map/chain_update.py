@@ -59,6 +59,10 @@ POINT_LENGTH = 0.15
 """What is shorter [m] is a post or one corner, of unknown direction."""
 SAME_OVERLAP = 0.3
 """Two sides are one if they overlap by this fraction of the shorter."""
+MIN_SURE_LENGTH = 0.5
+MAX_TURN_SIGMA = 0.08
+"""A segment longer [m] than the one whose direction is known less well [rad] than the other is two faces of a body,
+heard in a turn."""
 MAX_MISFIT = 4.0
 """Mean squared residual over the variance of a chain that no segment explains."""
 
@@ -143,7 +147,8 @@ def _fit_chain(
             rest = from_echo(chain, at)
             known = _with_edges(second, True, ends_at_edge)
             return _put(landmarks, rest, known, rest.used, params)
-    if whole.chi_square > MAX_MISFIT * chain.used:
+    unsure = whole.landmark.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(whole.landmark) > MIN_SURE_LENGTH
+    if whole.chi_square > MAX_MISFIT * chain.used or unsure:
         return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
     return _put(landmarks, chain, known, chain.used, params)

@@ -1,0 +1,82 @@
+"""The shipped scenarios of `apa` and `valet`, driven by this system: which of them end as they are meant to.
+
+``python -m tests.parking.test_shipped_scenarios`` prints all of them, and the share.
+"""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import pytest
+
+from controller_fmu.parking.params import ParkingParams, ParkingSystem
+from modelkit.variables import variables
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.session.drive import drive
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.summary import summarize
+
+SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
+NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
+AS_MEANT: tuple[str, ...] = ()
+"""Those that end as they are meant to; the others need what the system does not have yet, or go wrong."""
+
+
+class Ended(NamedTuple):
+    """How a scenario is meant to end, how it ended, why, and whether anything was touched."""
+
+    expected: str
+    outcome: str
+    reason: str
+    contact: bool
+
+
+def ended(name: str, folder: Path) -> Ended:
+    """Return how a scenario ends with this system instead of its own."""
+    scenario = load_scenario(name)
+    known = {variable.name for variable in variables(ParkingParams)}
+    kept = {key: value for key, value in scenario.controller.items() if key in known}
+    parked = scenario.expect in ("parked", "finished")
+    update = {
+        "controller": {**kept, "system": int(ParkingSystem.PARKING)},
+        "limits": [*shipped_requirements("valet-slot" if parked else "no-contact")],
+        "system": None,
+    }
+    scenario = scenario.model_copy(update=update)
+    try:
+        ran = drive(scenario, "native", folder / f"{name}.mcap")
+    except BadInput as error:
+        return Ended(str(scenario.expect), "not possible", str(error), False)
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    touched = bool(ran.recording.signals["vehicle.contact"].max() > 0)
+    return Ended(str(scenario.expect), str(summary.outcome), str(summary.reason), touched)
+
+
+def is_as_meant(found: Ended) -> bool:
+    return found.outcome == found.expected and not found.contact
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", AS_MEANT)
+def test_it_ends_as_meant(name: str, tmp_path: Path) -> None:
+    assert is_as_meant(ended(name, tmp_path)), ended(name, tmp_path)
+
+
+def test_the_list_names_shipped_scenarios() -> None:
+    assert set(AS_MEANT) <= set(NAMES)
+
+
+def print_all() -> None:
+    """Print how each scenario ends, and the share that ends as meant."""
+    count = 0
+    with TemporaryDirectory() as folder:
+        for name in NAMES:
+            found = ended(name, Path(folder))
+            count += is_as_meant(found)
+            print(f"{name:32} {'as meant' if is_as_meant(found) else 'NOT':9} {found}")
+    print(f"{count} of {len(NAMES)} end as meant")
+
+
+if __name__ == "__main__":
+    print_all()

@@ -9,8 +9,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
-from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.geometry.outline_extent import extent_within
+from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within
 from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed

@@ -17,6 +17,7 @@ from controller_fmu.parking.map.facing_surface import (
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle
+from controller_fmu.parking.measurement.predicted_range import range_in_map
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
     ReadingStatus,
@@ -25,7 +26,6 @@ from controller_fmu.parking.measurement.sensor import (
     sensor_pose,
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
-from controller_fmu.parking.monitor.expected_range import range_in_map
 from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track, with_expectation
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput

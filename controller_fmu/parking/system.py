@@ -16,7 +16,12 @@ from controller_fmu.parking.following.path_tracking import (
 )
 from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict, VehicleMotion, monitor_collision
+from controller_fmu.parking.monitor.collision_monitor import (
+    MonitorVerdict,
+    VehicleMotion,
+    monitor_collision,
+    stopping_distance,
+)
 from controller_fmu.parking.monitor.fault_monitor import (
     ExpectedMotion,
     FaultClocks,
@@ -25,7 +30,6 @@ from controller_fmu.parking.monitor.fault_monitor import (
     fault_reason,
     input_fault,
 )
-from controller_fmu.parking.monitor.stopping import stopping_distance
 from controller_fmu.parking.obstacle_map import remember_echoes
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import begin_plan, continue_plan, stands_in_slot, without_driven_over

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.geometry.outline_extent import boundary_point, extent_within
+from controller_fmu.parking.geometry.outline import boundary_point, extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import as_point, is_better, same_side
 from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
 from controller_fmu.parking.map.facing_surface import facing_segment

@@ -16,9 +16,10 @@ from controller_fmu.parking.monitor.collision_monitor import (
     MonitorVerdict,
     VehicleMotion,
     monitor_collision,
+    speed_for_distance,
+    stopping_distance,
 )
 from controller_fmu.parking.monitor.params import MonitorParams
-from controller_fmu.parking.monitor.stopping import speed_for_distance, stopping_distance
 from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track, with_expectation
 from modelkit.car import Car
 from modelkit.vocabulary import Pose

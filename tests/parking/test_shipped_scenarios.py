@@ -37,20 +37,20 @@ def ended(name: str, folder: Path) -> Ended:
     scenario = load_scenario(name)
     known = {variable.name for variable in variables(ParkingParams)}
     kept = {key: value for key, value in scenario.controller.items() if key in known}
-    parked = scenario.expect in ("parked", "finished")
+    parked = scenario.expected_outcome in ("parked", "finished")
     update = {
         "controller": {**kept, "system": int(ParkingSystem.PARKING)},
-        "limits": [*shipped_requirements("valet-slot" if parked else "no-contact")],
+        "requirements": [*shipped_requirements("valet-slot" if parked else "no-contact")],
         "system": None,
     }
     scenario = scenario.model_copy(update=update)
     try:
         ran = drive(scenario, "native", folder / f"{name}.mcap")
     except BadInput as error:
-        return Ended(str(scenario.expect), "not possible", str(error), False)
+        return Ended(str(scenario.expected_outcome), "not possible", str(error), False)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     touched = bool(ran.recording.signals["vehicle.contact"].max() > 0)
-    return Ended(str(scenario.expect), str(summary.outcome), str(summary.reason), touched)
+    return Ended(str(scenario.expected_outcome), str(summary.outcome), str(summary.reason), touched)
 
 
 def is_as_meant(found: Ended) -> bool:

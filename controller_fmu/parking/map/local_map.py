@@ -13,9 +13,8 @@ from controller_fmu.parking.map.association import (
 from controller_fmu.parking.map.chain_update import SideReading, use_side_reading
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
-from controller_fmu.parking.map.initialisation import landmark_of
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, replace_landmark
-from controller_fmu.parking.map.lifecycle import contradict, insert_landmark, merge_into
+from controller_fmu.parking.map.lifecycle import contradict, insert_landmark, landmark_of, merge_into
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.update import extend_over_window, update_with_feature

@@ -21,7 +21,6 @@ from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
-from controller_fmu.parking.monitor.stopping import speed_for_distance, stopping_distance
 from modelkit.vocabulary import Pose
 
 POSES = 8
@@ -171,3 +170,18 @@ def _is_within(landmark: Landmark, pose: Pose, reach: float) -> bool:
     dx = middle.x - pose.x
     dy = middle.y - pose.y
     return dx * dx + dy * dy < radius * radius
+
+
+def stopping_distance(speed: float, delay: float, deceleration: float) -> float:
+    """Return the distance [m] in which a vehicle at ``speed`` [m/s] >= 0 stops."""
+    return speed * delay + 0.5 * speed * speed / deceleration
+
+
+def speed_for_distance(distance: float, delay: float, deceleration: float) -> float:
+    """Return the largest speed [m/s] from which a vehicle stops within ``distance`` f [m]; 0 for none.
+
+    It is the positive root of v d + v2 / 2 b = f with delay d and deceleration b: v = b (sqrt(d2 + 2 f / b) - d).
+    """
+    if distance <= 0.0:
+        return 0.0
+    return max(0.0, deceleration * (math.sqrt(delay * delay + 2.0 * distance / deceleration) - delay))

@@ -63,6 +63,7 @@ check: lint types test ## Lint, types and tests
 lint: $(VENV)/.test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/python -m tests.vocabulary
 
 types: $(VENV)/.test
 	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim tests

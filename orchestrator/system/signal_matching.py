@@ -1,7 +1,8 @@
 """Suggested connections for a third-party FMU: signals alike in name, description, unit and type, best first."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from modelkit.variables import Variable
@@ -113,15 +114,21 @@ class Suggestion(NamedTuple):
         return self.score >= SURE_SCORE
 
 
+MAX_PAIRS = 200_000
+"""Pairs of an input and an output that are compared; of an FMU with more outputs the first ones, and equal names."""
+
+
 def match_signals(targets: Signals, sources: Signals, *, is_unique: bool) -> list[Suggestion]:
     """Return a suggestion for each input that has one, in the order of the inputs.
 
     ``is_unique``: an output feeds one input at most, the one that is most alike.
     """
+    compared = MAX_PAIRS // max(1, len(targets.variables))
+    places = {source.name: place for place, source in enumerate(sources.variables)}
     scored = [
-        (likeness(target, targets, source, sources), number, place)
+        (likeness(target, targets, sources.variables[place], sources), number, place)
         for number, target in enumerate(targets.variables)
-        for place, source in enumerate(sources.variables)
+        for place in _compared_places(target.name, places, min(compared, len(sources.variables)))
     ]
     ranked = sorted((item for item in scored if item[0] >= MIN_SCORE), key=lambda item: (-item[0], *item[1:]))
     chosen: dict[int, tuple[float, int]] = {}
@@ -133,6 +140,12 @@ def match_signals(targets: Signals, sources: Signals, *, is_unique: bool) -> lis
         _suggestion(targets, number, sources, *chosen[number], [item[2] for item in ranked if item[1] == number])
         for number in sorted(chosen)
     ]
+
+
+def _compared_places(name: str, places: Mapping[str, int], first: int) -> list[int]:
+    """Return the places of the first signals, and that of the signal of this name."""
+    own = places.get(name, -1)
+    return [*range(first), *([own] if own >= first else [])]
 
 
 def likeness(target: Variable, targets: Signals, source: Variable, sources: Signals) -> float:
@@ -152,6 +165,7 @@ def likeness(target: Variable, targets: Signals, source: Variable, sources: Sign
     return min(score + (USUAL_BONUS if source.name in sources.usual or target.name in targets.usual else 0.0), 0.99)
 
 
+@lru_cache(maxsize=1 << 14)
 def words(name: str) -> frozenset[str]:
     """Return the field terms of a name: ``StrWhlAngReq`` has steering, wheel, angle, request."""
     parts = [part.lower() for part in PART.findall(name)]

@@ -81,7 +81,7 @@ def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
     ranked = [
         *sorted((name for name in names if last and name.lower().rsplit(".", 1)[-1] == last), key=len),
         *sorted(partial, key=lambda name: (not name.lower().endswith(key), len(name))),
-        *difflib.get_close_matches(word[:MOST_LETTERS], names, n=2, cutoff=MIN_SIMILARITY),
+        *difflib.get_close_matches(word[:MOST_LETTERS], names[:MAX_COMPARED], n=2, cutoff=MIN_SIMILARITY),
     ]
     chosen = list(dict.fromkeys(ranked))[:MAX_SUGGESTIONS]
     return f"; did you mean {' or '.join(prefix + name for name in chosen)}?" if chosen else ""
@@ -105,6 +105,8 @@ def choices(known: Iterable[str], listing: str = "") -> str:
 
 MAX_SUGGESTIONS, MIN_PARTIAL_LETTERS, MIN_SIMILARITY = 3, 2, 0.6
 """At most so many names are suggested; a word of so many letters may be part of a name; ratio of ``difflib``."""
+MAX_COMPARED = 2000
+"""Names that are compared letter by letter; the others may be suggested for their last part or for a part of them."""
 MAX_CHOICES = 8
 """Names that a message lists before it says how many more there are."""
 MOST_LETTERS = 100

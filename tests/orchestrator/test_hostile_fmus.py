@@ -13,6 +13,7 @@ from orchestrator.foreign import worker
 from orchestrator.foreign.process_slave import answer_of
 from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
 from orchestrator.log.messages import read_messages
+from orchestrator.system.signal_matching import _compared_places
 from orchestrator.text.console import console, printable_streams
 from orchestrator.text.errors import BadInput
 from orchestrator.text.printable import CONTROL
@@ -194,3 +195,14 @@ def test_an_integer_that_no_log_can_hold_ends_the_run(tmp_path: Path, capsys: py
     file.write_text(f"name: wide\nbase: guo2015-case4\nstop_time: 0.3\nsystem:\n  slaves: {{gps: {fmu}}}\n")
     assert main(["run", str(file), "--fmus", "none", "--out", str(tmp_path / "out"), "--no-page"]) == 1
     assert "gps gives 1099511627776 for quality at 0.11 s, beyond 32-bit integers" in capsys.readouterr().out
+
+
+def test_an_fmu_of_many_signals_is_compared_in_bounds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each of 20,000 outputs with each input took over 100 s."""
+    path = described(tmp_path, '<Dimension start="3"/>', '<Dimension start="20000"/>')
+    assert main(["fmu", "check", str(path), "--no-load"]) == 1
+    out = capsys.readouterr().out
+    assert "more; --json lists all" in out
+    assert out.count("\n") < 5000
+    assert len(_compared_places("y", {"x": 0, "y": 7}, 3)) == 4
+    assert len(_compared_places("z", {"x": 0, "y": 7}, 3)) == 3

@@ -30,6 +30,9 @@ PARTS = {
 """Part of the report -> its head."""
 BAD = ("missing", "problems")
 
+MAX_LINES = 1000
+"""Of one part of the report."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
@@ -66,7 +69,9 @@ def _print(report: FmuReport) -> None:
             continue
         style = "bold red" if part in BAD else "bold"
         out.print(f"\n[{style}]{head}[/] ({len(lines)})")
-        for line in lines:
+        for line in lines[:MAX_LINES]:
             out.print(f"  {line}", markup=False, soft_wrap=True)
+        if len(lines) > MAX_LINES:
+            out.print(f"  and {len(lines) - MAX_LINES} more; --json lists all")
     verdict = "[bold green]can be run and judged[/]" if report.is_ready else "[bold red]not ready[/]"
     out.print(f"\n{verdict}")

@@ -97,5 +97,5 @@ def test_the_record_knows_nearly_all_of_them(kept: dict[str, Any]) -> None:
 def test_they_are_many() -> None:
     found = numbers()
     assert sum(map(len, found.values())) > 500
-    assert found["controller_fmu.guo2015.prompts"]["MOVING"] == 0.05
+    assert found["controller_fmu.guo2015.prompts"]["MOVING_SPEED"] == 0.05
     assert found["Controller"]["guo2015.k4"] == 4.0

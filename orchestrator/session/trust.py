@@ -50,7 +50,7 @@ def require_trust(origin: Path, code: Iterable[str]) -> None:
     if _Policy.now != "remember" and not _agrees(origin, listed, folder):
         text = f"runs code that comes with it: {listed}; add --trust if you trust {folder} (it is remembered)"
         raise BadInput(text, file=origin)
-    _remember(folder)
+    trust_folder(folder)
 
 
 def is_trusted(folder: Path) -> bool:
@@ -71,7 +71,11 @@ def _agrees(origin: Path, listed: str, folder: Path) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
-def _remember(folder: Path) -> None:
+def trust_folder(folder: Path) -> None:
+    """Remember that a folder is trusted, unless all are."""
+    folder = folder.resolve()
+    if os.environ.get(VARIABLE) == "all" or is_trusted(folder):
+        return
     try:
         file = _file()
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -113,7 +113,7 @@ def test_the_pipelines_of_an_fmu_check_it_and_run_its_scenario(
     assert lines[0] == 'python -m pip install "$APA_COSIM"'
     assert lines[1:] == [
         f"apa fmu check {NAME}.fmu --scenario {NAME}.yaml",
-        f"apa test {NAME}.yaml --junit results/apa.xml --out results",
+        f"apa test {NAME}.yaml --junit results/apa.xml --out results --trust",
     ]
     assert Requirement(variables["APA_COSIM"]).name == "apa-cosim"
     for line in lines[1:]:

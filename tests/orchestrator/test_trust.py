@@ -83,3 +83,9 @@ def test_a_table_asks_before_its_code_is_imported(received: Path, monkeypatch: p
     with trusting("ask"), pytest.raises(BadInput, match="add --trust"):
         write_scenario(table, 0, received.parent / "row.yaml")  # type: ignore[arg-type]
     assert not (received.parent / "ran").exists()
+
+
+def test_what_apa_new_has_written_is_trusted(received: Path, tmp_path: Path) -> None:
+    assert main(["new", "controller", "mine", "--out", str(tmp_path)]) == 0
+    assert is_trusted(tmp_path / "mine")
+    assert not is_trusted(tmp_path)

@@ -10,6 +10,7 @@ from pathlib import Path
 from string import Template
 
 from fmus.files import write_whole
+from orchestrator.session.trust import trust_folder
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
@@ -104,6 +105,7 @@ def _package(kind: str, out: Path, name: str) -> int:
     except OSError:
         shutil.rmtree(folder, ignore_errors=True)
         raise
+    trust_folder(folder)
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
@@ -150,7 +152,7 @@ def _write_system(file: Path, name: str, base: str, files: Mapping[str, str]) ->
     if made.open_signals:
         print(f"nothing suggested for {', '.join(made.open_signals)}")
     check = next(iter(files.values()))
-    print(f"next: apa fmu check {check} --scenario {file}\n      apa run {file}")
+    print(f"next: apa fmu check {check} --scenario {file}\n      apa run {file} --trust")
 
 
 def _study(arguments: argparse.Namespace) -> int:

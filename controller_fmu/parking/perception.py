@@ -26,7 +26,14 @@ from controller_fmu.parking.measurement.sensor import (
     sensor_pose,
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
-from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track, with_expectation
+from controller_fmu.parking.objects.track import (
+    ObjectTrack,
+    TrackStatus,
+    closing_speed,
+    range_in_blind_zone,
+    update_track,
+    with_expectation,
+)
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
@@ -109,12 +116,16 @@ def _track(
     approach = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
     is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE) and reading < MAX_MONITORED_RANGE
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
-    track = update_track(perception.tracks[number], is_echo, reading, approach, variance, sensors.cycle)
+    before_track = perception.tracks[number]
+    measured = reading
+    if status == ReadingStatus.BLIND_ZONE and before_track.status != TrackStatus.NONE:
+        measured = range_in_blind_zone(before_track, approach, reading)
+    track = update_track(before_track, is_echo, measured, approach, variance, sensors.cycle)
     if not is_echo:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
     planned = range_in_map(sensor, obstacles, sensors.max_range)
     expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
-    unexplained = reading < expected.distance - params.monitor.unexplained
+    unexplained = measured < expected.distance - params.monitor.unexplained
     distance = max(expected.distance, sensors.min_range)
     ux = (expected.x - sensor.x) / distance
     uy = (expected.y - sensor.y) / distance

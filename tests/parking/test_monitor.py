@@ -20,7 +20,14 @@ from controller_fmu.parking.monitor.collision_monitor import (
     stopping_distance,
 )
 from controller_fmu.parking.monitor.params import MonitorParams
-from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track, with_expectation
+from controller_fmu.parking.objects.track import (
+    ObjectTrack,
+    TrackStatus,
+    closing_speed,
+    range_in_blind_zone,
+    update_track,
+    with_expectation,
+)
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
@@ -119,6 +126,18 @@ def test_own_motion_is_no_closing_speed() -> None:
         distance -= 0.8 * 0.04
         track = update_track(track, True, distance, 0.8 * 0.04, 1e-4, 0.04)
     assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, True)) == 0.0
+
+
+def test_what_came_into_the_blind_zone_comes_nearer_as_the_vehicle_does() -> None:
+    """The sensor reports 0.15 m for anything nearer: a neighbour was passed at 2 mm."""
+    track, distance = ObjectTrack(), 0.3
+    for _ in range(20):
+        distance -= 0.01
+        reading = max(distance, 0.15)
+        if reading == 0.15:
+            reading = range_in_blind_zone(track, 0.01, reading)
+        track = update_track(track, True, reading, 0.01, 1e-4, 0.04)
+    assert track.range == pytest.approx(distance, abs=0.02)
 
 
 def test_a_track_coasts_and_ends() -> None:

@@ -19,7 +19,29 @@ from orchestrator.verdict.summary import summarize
 
 SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
-AS_MEANT: tuple[str, ...] = ()
+AS_MEANT = (
+    "apa-driver-drives",
+    "apa-no-slot",
+    "apa-not-confirmed",
+    "apa-parallel",
+    "apa-parallel-fast",
+    "apa-parallel-left",
+    "apa-parallel-real",
+    "apa-parallel-tight",
+    "apa-parallel-walls",
+    "apa-pedestrian-stays",
+    "apa-perpendicular",
+    "apa-perpendicular-left",
+    "apa-perpendicular-real",
+    "apa-perpendicular-tight",
+    "apa-search-too-fast",
+    "apa-slot-too-shallow",
+    "apa-switched-off",
+    "apa-takeover",
+    "apa-told-wrong",
+    "cicap-thing-in-slot",
+    "valet-search-perpendicular",
+)
 """Those that end as they are meant to; the others need what the system does not have yet, or go wrong."""
 
 

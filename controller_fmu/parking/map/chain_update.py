@@ -147,8 +147,7 @@ def _fit_chain(
             rest = from_echo(chain, at)
             known = _with_edges(second, True, ends_at_edge)
             return _put(landmarks, rest, known, rest.used, params)
-    unsure = whole.landmark.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(whole.landmark) > MIN_SURE_LENGTH
-    if whole.chi_square > MAX_MISFIT * chain.used or unsure:
+    if whole.chi_square > MAX_MISFIT * chain.used:
         return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
     return _put(landmarks, chain, known, chain.used, params)
@@ -236,9 +235,12 @@ def _put(
 ) -> ChainUpdate:
     """Return landmarks and chain with a chain's landmark set: its own renewed, or a new one.
 
-    A side that the map holds already, from another chain, takes the place of a shorter look at it.
+    A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
+    unsure direction is none: the chain went round a corner.
     """
     new = fit.landmark._replace(confirmations=echoes)
+    if new.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(new) > MIN_SURE_LENGTH:
+        return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     if length_of(new) < POINT_LENGTH:
         new = as_point(new)
     own = chain.landmark

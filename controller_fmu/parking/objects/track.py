@@ -82,6 +82,11 @@ def update_track(
     )
 
 
+def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: float) -> float:
+    """Return the range [m] of an object that a sensor reports as nearer than ``min_range``: by its own motion."""
+    return max(0.0, min(min_range, track.range - own_approach))
+
+
 def with_expectation(track: ObjectTrack, expected: float, ux: float, uy: float, is_unexplained: bool) -> ObjectTrack:
     """Return the track with what was ``expected`` [m] in the direction (ux, uy), and whether that explains it."""
     left = MAX_COASTING if is_unexplained else max(track.unexplained - 1, 0)

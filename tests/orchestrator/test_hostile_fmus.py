@@ -192,7 +192,7 @@ def test_an_integer_that_no_log_can_hold_ends_the_run(tmp_path: Path, capsys: py
     source.write_text(text.replace(old, "s->quality = s->samples > 10 ? (int64_t)1 << 40 : 2;"))
     fmu = c_fmu(tmp_path / "gps.fmu", source, (THEIR / "sensor.xml").read_text(), "sensor")
     file = tmp_path / "wide.yaml"
-    file.write_text(f"name: wide\nbase: guo2015-case4\nstop_time: 0.3\nsystem:\n  slaves: {{gps: {fmu}}}\n")
+    file.write_text(f"name: wide\nextends: guo2015-case4\nstop_time: 0.3\nsystem:\n  components: {{gps: {fmu}}}\n")
     assert main(["run", str(file), "--fmus", "none", "--out", str(tmp_path / "out"), "--no-page"]) == 1
     assert "gps gives 1099511627776 for quality at 0.11 s, beyond 32-bit integers" in capsys.readouterr().out
 

@@ -114,7 +114,7 @@ def test_a_run_that_is_stored_meanwhile_is_judged_to_the_same_bits(
 
 def test_contact_by_poses_is_the_same_block_by_block(parked: tuple[Recording, Path], stored: Recording) -> None:
     """A vehicle of somebody else's puts out no clearance, so every pose is held against the scene."""
-    scenario = logged(parked[0]).scenario.model_copy(update={"polygons": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]})
+    scenario = logged(parked[0]).scenario.model_copy(update={"obstacles": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]})
     for run in (parked[0], stored):
         run.info["fmus"] = []
     one, two = (summarize(run, scenario, 0.0) for run in (parked[0], stored))

@@ -128,7 +128,7 @@ def match_signals(targets: Signals, sources: Signals, *, is_unique: bool) -> lis
     scored = [
         (likeness(target, targets, sources.variables[place], sources), number, place)
         for number, target in enumerate(targets.variables)
-        for place in _compared_places(target.name, places, min(compared, len(sources.variables)))
+        for place in _places_to_compare(target.name, places, min(compared, len(sources.variables)))
     ]
     ranked = sorted((item for item in scored if item[0] >= MIN_SCORE), key=lambda item: (-item[0], *item[1:]))
     chosen: dict[int, tuple[float, int]] = {}
@@ -142,7 +142,7 @@ def match_signals(targets: Signals, sources: Signals, *, is_unique: bool) -> lis
     ]
 
 
-def _compared_places(name: str, places: Mapping[str, int], first: int) -> list[int]:
+def _places_to_compare(name: str, places: Mapping[str, int], first: int) -> list[int]:
     """Return the places of the first signals, and that of the signal of this name."""
     own = places.get(name, -1)
     return [*range(first), *([own] if own >= first else [])]

@@ -13,7 +13,7 @@ from orchestrator.foreign import worker
 from orchestrator.foreign.process_slave import answer_of
 from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
 from orchestrator.log.messages import read_messages
-from orchestrator.system.signal_matching import _compared_places
+from orchestrator.system.signal_matching import _places_to_compare
 from orchestrator.text.console import console, printable_streams
 from orchestrator.text.errors import BadInput
 from orchestrator.text.printable import CONTROL
@@ -204,5 +204,5 @@ def test_an_fmu_of_many_signals_is_compared_in_bounds(tmp_path: Path, capsys: py
     out = capsys.readouterr().out
     assert "more; --json lists all" in out
     assert out.count("\n") < 5000
-    assert len(_compared_places("y", {"x": 0, "y": 7}, 3)) == 4
-    assert len(_compared_places("z", {"x": 0, "y": 7}, 3)) == 3
+    assert len(_places_to_compare("y", {"x": 0, "y": 7}, 3)) == 4
+    assert len(_places_to_compare("z", {"x": 0, "y": 7}, 3)) == 3

@@ -17,7 +17,7 @@ from controller_fmu import (
     preview,
     zhang2022,
 )
-from controller_fmu.common.clock import Clock, begin, refused, tick
+from controller_fmu.common.clock import Clock, begin, refusal_output, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.parking.params import ParkingSystem
 from controller_fmu.valet.params import ValetSystem
@@ -122,7 +122,7 @@ SYSTEMS = SampledSystems(
     clock="clock",
     begin=begin,
     tick=tick,
-    refused=refused,
+    refused=refusal_output,
     outputs=ControllerOutput,
     systems=ROWS,
 )

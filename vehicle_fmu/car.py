@@ -7,8 +7,8 @@ from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.bodies.body import BodyState, motion_of, place, push_body, wheel_speed
 from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.drive import change_speed, push_speed
-from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
-from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, geared_speed, obey, press, shift, wanted_gear
+from vehicle_fmu.driver import DriverState, brakes, grabs, target_speed, watch
+from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, attainable_speed, obey, press, shift, target_gear
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, DriverParams, ManualInput, VehicleInput, VehicleParams
 from vehicle_fmu.manual_driving import has_pedals, lever_gear, roll, stops_controller, tread
@@ -35,7 +35,7 @@ class CarState(NamedTuple):
     odometry: OdometryState = OdometryState()
 
 
-def parked_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
+def initial_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
     """Return the car at rest, wheel straight, in park, the brake pressed; on its tyres if its numbers are usable."""
     holding = Effort(brake=params.chassis.mass * params.drive.hold_deceleration)
     return CarState(
@@ -53,7 +53,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     braked = inputs.brake_request or brakes(state.time_ns, params.driver) or stops_controller(inputs)
     free = not (faulty or driver.takeover or braked)
     target = _target_speed(state, driver, inputs, params.driver) if free else 0.0
-    wanted = wanted_gear(state.selector.gear, target)
+    wanted = target_gear(state.selector.gear, target)
     treads = free and has_pedals(inputs)
     if treads:
         wanted = lever_gear(inputs.manual, state.selector.gear, state.speed)
@@ -71,7 +71,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     if treads:
         state = _tread(state, inputs.manual, angles, params, h)
     else:
-        state = _go(state, inputs, geared_speed(selector, target), angles, params, h)
+        state = _go(state, inputs, attainable_speed(selector, target), angles, params, h)
     odometry = OdometryState(state.pose)
     if not params.odometry.ideal:
         way = 0.5 * h * (rolled_speed + state.rolled_speed)
@@ -110,7 +110,7 @@ def _go(
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
             speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(gear), h)
-        return _rolled(state, speed, angles, params, h)
+        return _roll(state, speed, angles, params, h)
     rolling = Rolling(state.speed, gear)
     if forced:
         pedals = obey(state.pedals, inputs.force_request, rolling, params.drive, h)
@@ -128,10 +128,10 @@ def _tread(
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
     state = state._replace(pedals=pedals)
-    return _rolled(state, speed, angles, params, h)
+    return _roll(state, speed, angles, params, h)
 
 
-def _rolled(state: CarState, speed: float, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
+def _roll(state: CarState, speed: float, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
     """Return the car ``h`` [s] later, of the body without tyres, whose ``speed`` [m/s] is known."""
     now = KinematicInput(state.speed, angles[0])
     pose = move(state.pose, now, KinematicInput(speed, angles[1]), params.car.wheelbase, h)
@@ -155,7 +155,7 @@ def _at_wheels(pedals: Pedals, gear: int, params: VehicleParams) -> Effort:
 def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, params: DriverParams) -> float:
     if inputs.speed_control_active or inputs.force_control_active:
         return inputs.speed_request
-    return wanted_speed(driver, inputs.advised_speed, state.time_ns, state.distance, params)
+    return target_speed(driver, inputs.advised_speed, state.time_ns, state.distance, params)
 
 
 def _brake_pedal(time_ns: int, driver: DriverState, driven: bool, inputs: VehicleInput, params: DriverParams) -> float:

@@ -39,7 +39,7 @@ def watch(state: DriverState, prompt: int, time_ns: int, params: DriverParams) -
     return DriverState(prompt, since, heeded, direction, takeover)
 
 
-def wanted_speed(
+def target_speed(
     state: DriverState, advised_speed: float, time_ns: int, distance: float, params: DriverParams
 ) -> float:
     """Return the speed [m/s] the driver wants, reverse negative.

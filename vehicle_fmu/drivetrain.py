@@ -56,7 +56,7 @@ class Rolling(NamedTuple):
     """Engaged."""
 
 
-def wanted_gear(gear: int, target: float) -> int:
+def target_gear(gear: int, target: float) -> int:
     """Return the gear for going at ``target`` [m/s]; to stand, the one engaged will do."""
     return Gear.REVERSE if target < 0.0 else Gear.DRIVE if target > 0.0 else gear
 
@@ -77,7 +77,7 @@ def shift(selector: Selector, wanted: int, speed: float, shift_time: float, step
     return Selector(Gear.NEUTRAL, wanted, int(shift_time * 1e9))
 
 
-def geared_speed(selector: Selector, target: float) -> float:
+def attainable_speed(selector: Selector, target: float) -> float:
     """Return the speed [m/s] to aim at with the gear engaged: ``target`` if it fits, else 0."""
     if (target > 0.0 and selector.gear == Gear.DRIVE) or (target < 0.0 and selector.gear == Gear.REVERSE):
         return target

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose, VehicleFault
-from vehicle_fmu.bodies.body import shown_speed
-from vehicle_fmu.car import CarState, parked_car, step_car
+from vehicle_fmu.bodies.body import displayed_speed
+from vehicle_fmu.car import CarState, initial_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
 from vehicle_fmu.interface import Body, VehicleInput, VehicleOutput, VehicleParams
 from vehicle_fmu.odometry import wheel_speed_reading
@@ -41,7 +41,7 @@ def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     else:
         fault = VehicleFault.BAD_PARAMETER
         start = Pose()
-    state = VehicleState(parked_car(start, fault == VehicleFault.NONE, params), heard, fault)
+    state = VehicleState(initial_car(start, fault == VehicleFault.NONE, params), heard, fault)
     return state, _outputs(state, gap, False, params)
 
 
@@ -82,8 +82,8 @@ def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehiclePar
     speed = car.speed
     measured = car.speed if params.odometry.ideal else car.rolled_speed
     if params.body != Body.KINEMATIC:
-        speed = shown_speed(speed)
-        measured = shown_speed(measured)
+        speed = displayed_speed(speed)
+        measured = displayed_speed(measured)
     front = 0.0
     if state.fault != VehicleFault.BAD_PARAMETER:
         front = car.steering.play / params.car.steering.ratio

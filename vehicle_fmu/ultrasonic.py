@@ -81,13 +81,13 @@ def measure(
     random = state.random
     ear = Ear(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
     readings = state.readings
-    for distance in heard_distances(pose, scene, sensors, params.kerb_height, time_ns):
+    for distance in range_measurements(pose, scene, sensors, params.kerb_height, time_ns):
         random, reading = _reading(random, distance, ear)
         readings = readings[1:] + (reading,)
     return UltrasonicState(readings, random)
 
 
-def heard_distances(
+def range_measurements(
     pose: Pose, scene: SceneParams, sensors: CarUltrasonic, kerb_height: float, time_ns: int
 ) -> tuple[float, ...]:
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""

@@ -69,24 +69,24 @@ class Driver(NamedTuple):
     """When he had slowed down to ``BRAKING_FIT_UPPER_FRACTION`` and ``BRAKING_FIT_LOWER_FRACTION``; 0: not yet."""
 
 
-def prompted(driver: Driver, speed: float) -> Driver:
+def update_prompt(driver: Driver, speed: float) -> Driver:
     """Return the driver told another thing than before, at ``speed`` [m/s]."""
     return driver._replace(
         asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_way=0.0, early_ns=0, late_ns=0, stood_ns=0
     )
 
 
-def told_to_stop(driver: Driver, speed: float, advised: float, believed: BeliefParams) -> Driver:
+def on_stop_prompt(driver: Driver, speed: float, advised: float, believed: BeliefParams) -> Driver:
     """Return the driver told to stop at ``speed`` [m/s]: who has come down with the advice on the way slows down."""
     v = abs(speed)
     slows = driver.slows or (
         advised < SLOW_DOWN_SPEED_RATIO * driver.fastest and v <= NONCOMPLIANCE_SPEED_RATIO * advised
     )
     foreseen = stopping_way(driver, believed)
-    return prompted(driver, speed)._replace(slows=slows and driver.obeys, foreseen=foreseen)
+    return update_prompt(driver, speed)._replace(slows=slows and driver.obeys, foreseen=foreseen)
 
 
-def seen_driving(
+def update_while_driving(
     driver: Driver, speed: float, advised: float, standstill: float, believed: BeliefParams, dt_ns: int
 ) -> Driver:
     """Return the driver after a sample in which he was prompted to drive, no faster than ``advised`` [m/s]."""
@@ -107,19 +107,19 @@ def seen_driving(
         cruise=cruise,
         obeys=driver.obeys and not (late and v > NONCOMPLIANCE_SPEED_RATIO * advised + 0.03),
         speed=v,
-        acceleration=_smoothed(driver, v, dt_ns),
+        acceleration=_filter_acceleration(driver, v, dt_ns),
         asked_ns=asked_ns,
         moved=driver.moved or sets_out,
     )
 
 
-def seen_stopping(driver: Driver, speed: float, standstill: float, dt_ns: int) -> Driver:
+def update_while_stopping(driver: Driver, speed: float, standstill: float, dt_ns: int) -> Driver:
     """Return the driver after a sample in which he was prompted to stop."""
     v = abs(speed)
     asked_ns = driver.asked_ns + dt_ns
     return driver._replace(
         speed=v,
-        acceleration=_smoothed(driver, v, dt_ns),
+        acceleration=_filter_acceleration(driver, v, dt_ns),
         fastest=max(driver.fastest, v),
         asked_ns=asked_ns,
         stop_way=driver.stop_way + v * (dt_ns * 1e-9),
@@ -140,7 +140,7 @@ def has_stopped(driver: Driver, believed: BeliefParams) -> bool:
     return stood >= STANDSTILL_SPEED and (driver.asked_ns * 1e-9 >= late or stood >= LONG_STOOD)
 
 
-def stopped(driver: Driver, believed: BeliefParams) -> Driver:
+def update_at_standstill(driver: Driver, believed: BeliefParams) -> Driver:
     """Return the driver who has come to stand after a prompt to stop."""
     v = driver.stop_speed
     took = (driver.late_ns - driver.early_ns) * 1e-9
@@ -187,6 +187,6 @@ def shortest_way(driver: Driver, believed: BeliefParams) -> float:
     return driver.stretch * v * (reaction_of(driver, believed) + 0.5 * v / deceleration_of(driver, believed))
 
 
-def _smoothed(driver: Driver, v: float, dt_ns: int) -> float:
+def _filter_acceleration(driver: Driver, v: float, dt_ns: int) -> float:
     dt = dt_ns * 1e-9
     return driver.acceleration + ((v - driver.speed) / dt - driver.acceleration) * dt / (dt + ACCELERATION_FILTER_TIME)

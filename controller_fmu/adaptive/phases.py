@@ -29,7 +29,7 @@ def direction_of(phase: int) -> int:
     return 1 if phase == AdaptivePhase.TO_Q4 else -1 if phase == AdaptivePhase.PATH_TRACKING else 0
 
 
-def expected_in(phase: int) -> Expected:
+def motion_expectation(phase: int) -> Expected:
     """Return what is expected of driver and car in a phase."""
     steering = phase in (AdaptivePhase.PRE_STEER, AdaptivePhase.STRAIGHTEN)
     return Expected(phase != AdaptivePhase.STANDBY, direction_of(phase), steering)

@@ -19,7 +19,7 @@ from controller_fmu.adaptive.curves import (
     swing_way,
 )
 from controller_fmu.adaptive.room import Room, room_along, room_at
-from controller_fmu.adaptive.route import Route, drivable, mirrored, point_at
+from controller_fmu.adaptive.route import Route, drivable, mirror_route, point_at
 from modelkit.vocabulary import Pose
 
 SPEEDS = (2.0, 1.6, 1.3, 1.05, 0.85, 0.7, 0.55, 0.42, 0.32, 0.25)
@@ -163,20 +163,20 @@ def _smooth(pose: Pose, speed: float, lead: float, demand: Demand, wheel: Steeri
     for mirror in (1.0, -1.0):
         start = Pose(pose.x, mirror * pose.y, mirror * pose.heading)
         if lead == 0.0:
-            found = mirrored(arc_in(start, speed, wheel, demand.rest), mirror, pose, -1)
+            found = mirror_route(arc_in(start, speed, wheel, demand.rest), mirror, pose, -1)
             if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                 return found
         for share in RADII:
             radius = share * wheel.radius
             bend = bend_of(radius, swing_way(speed, radius, wheel))
             if lead == 0.0:
-                found = mirrored(line_in(start, bend, demand.rest), mirror, pose, -1)
+                found = mirror_route(line_in(start, bend, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found
             for other in RADII:
                 radius2 = other * wheel.radius
                 bend2 = bend_of(radius2, swing_way(speed, radius2, wheel))
-                found = mirrored(s_curve(start, lead, bend, bend2, demand.rest), mirror, pose, -1)
+                found = mirror_route(s_curve(start, lead, bend, bend2, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found
     return NO_ROUTE
@@ -196,7 +196,7 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: S
             inwards = arc_in(at, demand.speed, wheel, demand.rest)
             free = inwards.direction != 0
             if free:
-                found = mirrored(inwards, mirror, Pose(at.x, mirror * at.y, mirror * at.heading), -1)
+                found = mirror_route(inwards, mirror, Pose(at.x, mirror * at.y, mirror * at.heading), -1)
                 free = room_along(found, room, room.margin) >= room.margin
             if free:
                 first = way if first < 0.0 else first
@@ -220,7 +220,7 @@ def plan_onto(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> 
         if share == 1.0 or share == 0.0 or demand.willing:
             found = _smooth(seen, speed, 0.0, at_once, wheel, empty)
             if found.direction != 0:
-                route = mirrored(found, 1.0, pose, 1)
+                route = mirror_route(found, 1.0, pose, 1)
                 enough = _enough(pose, room)
                 if room_along(route, room, enough) >= enough:
                     return Plan(route, speed if speed > 0.0 else ANY_SPEED)

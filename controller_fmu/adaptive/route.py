@@ -111,7 +111,7 @@ def foot_on(route: Route, way: float, pose: Pose) -> Foot:
     return Foot(way, at, e, wrap_angle(pose.heading - at.heading))
 
 
-def mirrored(route: Route, mirror: float, start: Pose, direction: int) -> Route:
+def mirror_route(route: Route, mirror: float, start: Pose, direction: int) -> Route:
     """Return a route from ``start`` in ``direction`` with every curvature multiplied by ``mirror`` (1 or -1)."""
     pieces = tuple(Piece(item.length, mirror * item.k0, mirror * item.k1) for item in route.pieces)
     return Route(start, direction if route.direction != 0 else 0, pieces)

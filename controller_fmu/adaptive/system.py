@@ -8,17 +8,17 @@ from controller_fmu.adaptive.curves import SteeringLimits
 from controller_fmu.adaptive.driver import (
     Driver,
     has_stopped,
-    prompted,
+    on_stop_prompt,
     reaction_of,
-    seen_driving,
-    seen_stopping,
     shortest_way,
-    stopped,
     stopping_way,
-    told_to_stop,
+    update_at_standstill,
+    update_prompt,
+    update_while_driving,
+    update_while_stopping,
 )
 from controller_fmu.adaptive.params import AdaptiveSystemParams
-from controller_fmu.adaptive.phases import AdaptivePhase, direction_of, expected_in
+from controller_fmu.adaptive.phases import AdaptivePhase, direction_of, motion_expectation
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
 from controller_fmu.adaptive.route import STANDSTILL_LOOKAHEAD, Foot, curvature_at, drivable, foot_on
@@ -84,13 +84,13 @@ def adaptive_sample(
 ) -> AdaptiveState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
-        return _ended(state, state.phase, state.reason, inputs.driver_takeover)
+        return _terminate(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, AdaptivePhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
+        return _terminate(state, AdaptivePhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     frame = frame_at(params.target, inputs.odometry) if state.phase == AdaptivePhase.STANDBY else state.frame
     pose = to_slot(inputs.odometry, frame)
     watched = inputs.steering_wheel_angle if state.phase == AdaptivePhase.STANDBY else state.request
-    expected = expected_in(state.phase)
+    expected = motion_expectation(state.phase)
     monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
     seen = state._replace(
         frame=frame,
@@ -103,16 +103,16 @@ def adaptive_sample(
     if state.phase == AdaptivePhase.STOP:
         standing = standing and has_stopped(seen.driver, params.adaptive.belief)
     if standing and state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STOP):
-        seen = _stood(seen, pose, params)
+        seen = _replan_at_standstill(seen, pose, params)
     elif direction_of(state.phase) != 0 or state.phase == AdaptivePhase.STOP:
-        seen = _tracked(seen, pose)
+        seen = _update_tracking(seen, pose)
     reason = reason_to_fail(monitor, inputs, expected, seen.running_ns, state.manoeuvres, params)
     if reason == Reason.NONE and standing and _is_stuck(seen, pose, params):
         reason = Reason.NO_PATH if state.phase == AdaptivePhase.STANDBY else Reason.MISSED_TARGET
     phase = transition(state.phase, _guards(seen, reason, pose, inputs, standing, params))
     if is_over(phase):
-        return _ended(seen, phase, reason if phase == AdaptivePhase.FAILED else Reason.NONE, inputs.driver_takeover)
-    return _moved_on(seen, phase, inputs, params)
+        return _terminate(seen, phase, reason if phase == AdaptivePhase.FAILED else Reason.NONE, inputs.driver_takeover)
+    return _enter_phase(seen, phase, inputs, params)
 
 
 def is_in_place(pose: Pose, params: AdaptiveSystemParams) -> bool:
@@ -125,16 +125,20 @@ def _driver(state: AdaptiveState, inputs: ParkingInput, params: AdaptiveSystemPa
     """Return the driver as known after this sample."""
     speed = inputs.measured_speed
     if state.phase == AdaptivePhase.STOP:
-        return seen_stopping(state.driver, speed, params.threshold.standstill, dt_ns)
+        return update_while_stopping(state.driver, speed, params.threshold.standstill, dt_ns)
     if direction_of(state.phase) != 0:
         believed = params.adaptive.belief
-        return seen_driving(state.driver, speed, state.advice, params.threshold.standstill, believed, dt_ns)
+        return update_while_driving(state.driver, speed, state.advice, params.threshold.standstill, believed, dt_ns)
     return state.driver
 
 
-def _stood(state: AdaptiveState, pose: Pose, params: AdaptiveSystemParams) -> AdaptiveState:
+def _replan_at_standstill(state: AdaptiveState, pose: Pose, params: AdaptiveSystemParams) -> AdaptiveState:
     """Return the system with a plan from where the car stands, and the driver as his stop has shown him."""
-    driver = stopped(state.driver, params.adaptive.belief) if state.phase == AdaptivePhase.STOP else state.driver
+    driver = (
+        update_at_standstill(state.driver, params.adaptive.belief)
+        if state.phase == AdaptivePhase.STOP
+        else state.driver
+    )
     if is_in_place(pose, params):
         return state._replace(driver=driver, plan=NO_PLAN)
     path = params.adaptive.path
@@ -158,7 +162,7 @@ def wheel_of(steering: Steering, params: AdaptiveSystemParams) -> SteeringLimits
     return SteeringLimits(params.car.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
 
 
-def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
+def _update_tracking(state: AdaptiveState, pose: Pose) -> AdaptiveState:
     """Return the system with the foot of the car; a driver too fast for the route stays on its first arc to a stop."""
     foot = foot_on(state.plan.route, state.foot.way, pose)
     slower = state.plan.slower
@@ -213,15 +217,15 @@ def _guards(
     )
 
 
-def _moved_on(state: AdaptiveState, phase: int, inputs: ParkingInput, params: AdaptiveSystemParams) -> AdaptiveState:
+def _enter_phase(state: AdaptiveState, phase: int, inputs: ParkingInput, params: AdaptiveSystemParams) -> AdaptiveState:
     direction = direction_of(phase)
     turned = direction != 0 and direction != state.direction
     counted = turned and (state.manoeuvres > 0 or direction < 0)
     driver = state.driver
     if phase != state.phase and direction != 0:
-        driver = prompted(driver, inputs.measured_speed)
+        driver = update_prompt(driver, inputs.measured_speed)
     if phase != state.phase and phase == AdaptivePhase.STOP:
-        driver = told_to_stop(driver, inputs.measured_speed, state.advice, params.adaptive.belief)
+        driver = on_stop_prompt(driver, inputs.measured_speed, state.advice, params.adaptive.belief)
     along = direction * inputs.measured_speed
     moved = state._replace(
         phase=phase,
@@ -264,5 +268,5 @@ def _advice(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
     return min(fast, near)
 
 
-def _ended(state: AdaptiveState, phase: int, reason: int, takeover: bool) -> AdaptiveState:
+def _terminate(state: AdaptiveState, phase: int, reason: int, takeover: bool) -> AdaptiveState:
     return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)

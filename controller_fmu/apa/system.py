@@ -37,7 +37,7 @@ from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reaso
 from controller_fmu.common.chart import bit
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import Listened, listened_on
+from controller_fmu.common.sensors import Listened, update_sample
 from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
@@ -97,7 +97,7 @@ def apa_sample(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     heard_now = without_deaf(inputs.ultrasonic, state.around.guard.silences)
     inputs = inputs._replace(ultrasonic=usable(heard_now, params.car.ultrasonic.min_range))
-    heard_last = listened_on(state.listened, inputs.ultrasonic, state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
+    heard_last = update_sample(state.listened, inputs.ultrasonic, state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
     state = state._replace(listened=heard_last)
     command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
     looking = state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH) and not has_slot(state)

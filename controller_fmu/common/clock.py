@@ -38,7 +38,7 @@ def tick(clock: Clock, params: Clocked, dt_ns: int) -> tuple[Clock, int, int]:
     return Clock(end_ns, clock.next_sample_ns + samples * period_ns, True), samples, period_ns
 
 
-def refused() -> RefusedOutput:
+def refusal_output() -> RefusedOutput:
     """Return the outputs of a controller that cannot work with its parameters: it stops the car."""
     return RefusedOutput(prompt=Prompt.STOP, brake_request=True, phase=CommonPhase.FAILED, reason=Reason.BAD_PARAMETER)
 

@@ -30,7 +30,7 @@ class Listened(NamedTuple):
     fresh: bool = False
 
 
-def listened_on(before: Listened, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float) -> Listened:
+def update_sample(before: Listened, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float) -> Listened:
     """Return what is heard in a sample of ``dt_ns``: new readings may come later than they are measured.
 
     Where data is exchanged seldom, a sample arrives up to ``MAX_SAMPLE_LATENCY`` [s] after its ``cycle`` [s]: until

@@ -34,7 +34,7 @@ DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
 """Direction that each GuoPhase drives in, in its order."""
 
 
-def expected_in(phase: int) -> Expected:
+def motion_expectation(phase: int) -> Expected:
     """Return what is expected of driver and car in a phase."""
     steering = phase in (GuoPhase.PRE_STEER, GuoPhase.STRAIGHTEN)
     return Expected(phase != GuoPhase.STANDBY, DIRECTION_OF_PHASE[phase], steering)

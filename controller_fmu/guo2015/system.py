@@ -18,7 +18,7 @@ from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_gua
 from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.params import GuoSystemParams
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
-from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase, expected_in
+from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase, motion_expectation
 from controller_fmu.guo2015.planner import Plan, plan
 from controller_fmu.guo2015.prompts import (
     is_moving,
@@ -77,13 +77,13 @@ def guo_start(params: GuoSystemParams) -> GuoState:
 def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, dt_ns: int) -> GuoState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
-        return _ended(state, state.phase, state.reason, inputs.driver_takeover)
+        return _terminate(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, GuoPhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
+        return _terminate(state, GuoPhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
     if state.phase == GuoPhase.STANDBY:
         if not params.guo2015.prompting.deceleration > 0.0:
-            return _ended(state, GuoPhase.FAILED, Reason.BAD_PARAMETER, inputs.driver_takeover)
+            return _terminate(state, GuoPhase.FAILED, Reason.BAD_PARAMETER, inputs.driver_takeover)
         smallest = smallest_radius(params.car)
         reserve = params.guo2015.radius_reserve
         radius = params.guo2015.radius
@@ -91,7 +91,7 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
         planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.car.wheelbase)
     pose = to_slot(inputs.odometry, planned.frame)
     watched = inputs.steering_wheel_angle if state.phase == GuoPhase.STANDBY else state.request
-    expected = expected_in(state.phase)
+    expected = motion_expectation(state.phase)
     monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
     leg = state.driven if state.phase == GuoPhase.STOP else state.leg
     tracking = track(leg, pose, planned.path, state.piece, params)
@@ -100,13 +100,13 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
     guards = _guards(state, now, tracking, reason, params)
     phase, next_leg = transition(state.phase, state.leg, guards)
     if is_over(phase):
-        return _ended(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
-    return _moved_on(state, now, phase, next_leg, params)
+        return _terminate(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
+    return _enter_phase(state, now, phase, next_leg, params)
 
 
 def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemParams) -> int:
     limit = params.threshold
-    expected = expected_in(state.phase)
+    expected = motion_expectation(state.phase)
     reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.manoeuvres, params)
     if reason != Reason.NONE:
         return reason
@@ -137,7 +137,7 @@ def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, param
     )
 
 
-def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSystemParams) -> GuoState:
+def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSystemParams) -> GuoState:
     back_on_path = state.phase == GuoPhase.STOP and phase == GuoPhase.PRE_STEER and leg == GuoPhase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
@@ -207,5 +207,5 @@ def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: GuoSys
     return wheel_request(tracking.front_wheel_angle, planned.frame.mirror, params)
 
 
-def _ended(state: GuoState, phase: int, reason: int, takeover: bool) -> GuoState:
+def _terminate(state: GuoState, phase: int, reason: int, takeover: bool) -> GuoState:
     return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)

@@ -18,7 +18,7 @@ def tangent_error(points: KeyPoints, pose: Pose) -> float:
     return errors(pose, points.p3, 0.0, 1).lateral
 
 
-def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
+def path_of_plan(points: KeyPoints, frame: SlotFrame) -> Path:
     """Return arc, common tangent, arc; empty without key points."""
     if not points.found:
         return Path()
@@ -59,6 +59,6 @@ def hsic_outputs(state: HsicState, params: HsicSystemParams) -> HsicOutput:
         reference=to_world(state.course.goal, state.frame),
         lateral_error=state.found.lateral,
         heading_error=state.found.heading,
-        path=planned_path(state.course.points, state.frame),
+        path=path_of_plan(state.course.points, state.frame),
         hsic=signals,
     )

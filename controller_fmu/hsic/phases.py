@@ -20,7 +20,7 @@ class HsicPhase(IntEnum):
     TAKEOVER = CommonPhase.TAKEOVER
 
 
-def expected_in(phase: int, direction: int) -> Expected:
+def motion_expectation(phase: int, direction: int) -> Expected:
     """Return what is expected of driver and car in a phase; ``direction`` is that driven last, 1 forward."""
     driven = (1 if direction > 0 else -1) if phase == HsicPhase.PATH_TRACKING else 0
     steering = phase in (HsicPhase.PRE_STEER, HsicPhase.STRAIGHTEN)

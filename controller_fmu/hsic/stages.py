@@ -66,7 +66,7 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, car: Car, p
 def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
     """Return done at P4 if parked; otherwise on to the slot's end, then the shuffle."""
     if arrived and is_parked(pose, 1.0, params):
-        return _done(course)
+        return _finish(course)
     if arrived and pose.x <= course.points.rearmost + params.threshold.reached:
         return _go(course, HsicStage.SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
     if arrived:
@@ -77,7 +77,7 @@ def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
 def _shuffle(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
     """Return done as soon as the car is parked, else the other end of the slot when this one is reached."""
     if is_parked(pose, params.threshold.shuffle_share, params):
-        return _done(course)
+        return _finish(course)
     if not arrived:
         return course
     front = course.points.foremost
@@ -94,5 +94,5 @@ def way_to(goal: Pose, pose: Pose) -> int:
     return -1 if errors(pose, goal, 0.0, 1).ahead > 0.0 else 1
 
 
-def _done(course: Course) -> Course:
+def _finish(course: Course) -> Course:
     return course._replace(done=True, hold=True)

@@ -12,7 +12,7 @@ from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors,
 from controller_fmu.hsic.control import Situation, curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point, slot_bounds
 from controller_fmu.hsic.params import HsicSystemParams
-from controller_fmu.hsic.phases import HsicPhase, expected_in
+from controller_fmu.hsic.phases import HsicPhase, motion_expectation
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
 from controller_fmu.interface import ParkingInput, Reason
@@ -59,13 +59,13 @@ def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams
     if is_over(state.phase):
         return state
     if not is_usable_input(inputs):
-        return _ended(state, HsicPhase.FAILED, Reason.BAD_INPUT)
+        return _terminate(state, HsicPhase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, HsicPhase.TAKEOVER, Reason.NONE)
+        return _terminate(state, HsicPhase.TAKEOVER, Reason.NONE)
     if state.phase == HsicPhase.STANDBY:
-        return _planned(inputs, params)
+        return _plan(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
-    expected = expected_in(state.phase, state.direction)
+    expected = motion_expectation(state.phase, state.direction)
     wheel = steering_wheel_angle(state.angle, state.frame.mirror, params)
     monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, expected, state.running_ns, state.manoeuvres, params)
@@ -73,18 +73,18 @@ def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams
     if reason == Reason.NONE and state.course.stage != HsicStage.READY and lost:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
-        return _ended(state, HsicPhase.FAILED, reason)
+        return _terminate(state, HsicPhase.FAILED, reason)
     state = state._replace(
         running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
         pose=pose,
         monitor=monitor,
     )
     if state.phase == HsicPhase.STRAIGHTEN:
-        return _straightened(state, inputs, params)
-    return _driven(state, inputs, params, dt_ns)
+        return _straighten(state, inputs, params)
+    return _drive(state, inputs, params, dt_ns)
 
 
-def _planned(inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
+def _plan(inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
     """Return the system on its way to the ready point, or failed: no key points, or the car touches a neighbour."""
     slot = params.hsic.slot
     car = params.car
@@ -102,7 +102,7 @@ def _planned(inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
     )
 
 
-def _driven(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt_ns: int) -> HsicState:
+def _drive(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt_ns: int) -> HsicState:
     """Return the system after one look at the situation and the rule that belongs to it."""
     hsic = params.hsic
     v = inputs.measured_speed
@@ -127,7 +127,7 @@ def _driven(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt
     )
     still = hold or turning or course.done
     phase = HsicPhase.STRAIGHTEN if course.done else HsicPhase.PRE_STEER if still else HsicPhase.PATH_TRACKING
-    counted = _counted(state, course.stage, phase, direction)
+    counted = _manoeuvre_direction(state, course.stage, phase, direction)
     return state._replace(
         phase=phase,
         course=course._replace(hold=hold),
@@ -148,14 +148,14 @@ def _front_wheels(mode: int, now: Situation, arc: float, params: HsicSystemParam
     return math.atan(params.car.wheelbase * bend)
 
 
-def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
+def _manoeuvre_direction(state: HsicState, stage: int, phase: int, direction: int) -> int:
     """Return the direction of the manoeuvre being driven: the first reverse begins the first one."""
     if phase != HsicPhase.PATH_TRACKING or stage == HsicStage.READY or (state.counted == 0 and direction > 0):
         return state.counted
     return direction
 
 
-def _straightened(state: HsicState, inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
+def _straighten(state: HsicState, inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
     """Return the system at its end: wheel to the middle, then parked or missed."""
     phase = HsicPhase.STRAIGHTEN
     reason = Reason.NONE
@@ -174,5 +174,5 @@ def _straightened(state: HsicState, inputs: ParkingInput, params: HsicSystemPara
     )
 
 
-def _ended(state: HsicState, phase: int, reason: int) -> HsicState:
+def _terminate(state: HsicState, phase: int, reason: int) -> HsicState:
     return state._replace(phase=phase, reason=reason, set_speed=0.0)

@@ -63,7 +63,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged["car"] = car.name
     merged["requirements"] = requirements_of(merged.get("requirements", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
-    for owner, model in models_for(_asked(layers)).items():
+    for owner, model in models_for(_requested_system(layers)).items():
         given = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
         merged[owner] = {key: value for key, value in given.items() if not isinstance(value, str)}
         texts = {key: value for key, value in given.items() if isinstance(value, str)}
@@ -99,7 +99,7 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     layers = expand_layouts(layers)
     merged: dict[str, Any] = {}
     for content, _ in layers:
-        merged = merge_nested(merged, {key: _named(key, content[key]) for key in content if key not in NOT_MERGED})
+        merged = merge_nested(merged, {key: _as_mapping(key, content[key]) for key in content if key not in NOT_MERGED})
     return path, layers, merged
 
 
@@ -167,13 +167,13 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
         raise BadInput(
             f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="extends"
         )
-    content = _placed(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
+    content = _resolve_files(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
     base = content.get("extends")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
 
 
-def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
+def _resolve_files(content: dict[str, Any], path: Path) -> dict[str, Any]:
     """Return what a file says, with the FMUs of its system where they are, seen from the file."""
     system = _in(content, "system")
     if not system:
@@ -197,7 +197,7 @@ def _entry_beside(entry: object, folder: Path) -> object:
     return {**given, "file": str(folder / str(given["file"]))}
 
 
-def _asked(layers: list[Layer]) -> dict[str, object]:
+def _requested_system(layers: list[Layer]) -> dict[str, object]:
     """Return what the topmost layer that says it asks for as ``controller.system``."""
     sections = [content.get("controller") for content, _ in layers]
     asked = [section["system"] for section in sections if isinstance(section, Mapping) and "system" in section]
@@ -289,7 +289,7 @@ def _parameters_called(key: str) -> list[str]:
     return sorted(name for name in names if name.endswith(f".{key}"))
 
 
-def _named(key: str, value: object) -> object:
+def _as_mapping(key: str, value: object) -> object:
     """Return a target written as a list of x, y, heading as a mapping; anything else as it is."""
     is_list = key == "target" and isinstance(value, list) and len(value) <= len(Target.model_fields)
     return dict(zip(Target.model_fields, value, strict=False)) if is_list and isinstance(value, list) else value

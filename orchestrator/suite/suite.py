@@ -147,7 +147,7 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
         scenario, ignored, foreign = load_fitting(name, sets, bench.foreign)
         bench = bench._replace(foreign=foreign)
         _claim(scenario.name, taken, "scenario of this test", name)
-        return _judged(scenario, ignored, bench, out / scenario.name)
+        return _evaluate(scenario, ignored, bench, out / scenario.name)
     except Exception as error:
         code, line = explained(error, ["test", name])
         could_not_run = isinstance(error, (NotRunError, *RESOURCES))
@@ -159,7 +159,7 @@ def _nameable(text: str) -> str:
     return UNNAMEABLE.sub("-", text).lstrip(".-")[:MOST_LETTERS] or "unnamed"
 
 
-def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
+def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
     with owned(folder):
         ran = run_scenario(
             scenario,

@@ -79,7 +79,7 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
     ending, models = scenario.stop_condition, tuple(scenario.models.items())
     faults = tuple(item.inputs for item in heard(scenario))
     with _compiling:
-        return _compiled(
+        return _compile_rows(
             models, measures, faults, choices, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns
         )
 
@@ -89,20 +89,20 @@ def explain(job: Job, chunk: Chunk) -> str:
     scenario = Scenario(**job.scenario)
     models, end = dict(scenario.models), scenario.stop_condition
     ending = Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
-    used = used_signals(ending, [_kept(item) for item in job.measures])
+    used = used_signals(ending, [_recorded_signal(item) for item in job.measures])
     slices = study_slices(models, used, dict(choices_of(scenario, arrays(job, chunk)[0])))
     return explanation(models, slices)
 
 
 @lru_cache
-def _compiled(
+def _compile_rows(
     models: tuple[tuple[str, Model], ...],
     measures: tuple[Measure, ...],
     faults: tuple[Disturbed, ...],
     choices: Choices | None,
     *ending: Any,
 ) -> Rows:
-    whole, kept = dict(models), [_kept(item) for item in measures]
+    whole, kept = dict(models), [_recorded_signal(item) for item in measures]
     complete = compiled_rows(whole, Ending(*ending), kept, faults)
     if choices is None:
         return complete
@@ -111,5 +111,5 @@ def _compiled(
     return StudyRows(complete, compiled_rows(whole, Ending(*ending), kept, faults, code))
 
 
-def _kept(measure: Measure) -> Kept:
+def _recorded_signal(measure: Measure) -> Kept:
     return Kept(measure.how, measure.signal, None if measure.when is None else When(*measure.when))

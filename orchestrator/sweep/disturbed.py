@@ -43,11 +43,11 @@ def heard(scenario: Scenario) -> tuple[Receiver, ...]:
         return ()
     faults = [item.model_dump(mode="json") for item in scenario.faults]
     chosen = {key: value for key, value in scenario.controller.items() if key == SYSTEM}
-    return _heard(json.dumps(faults), tuple(chosen.items()), scenario.file)
+    return _receivers(json.dumps(faults), tuple(chosen.items()), scenario.file)
 
 
 @lru_cache
-def _heard(faults: str, chosen: tuple[tuple[str, Any], ...], file: str) -> tuple[Receiver, ...]:
+def _receivers(faults: str, chosen: tuple[tuple[str, Any], ...], file: str) -> tuple[Receiver, ...]:
     given = [Fault(**item) for item in json.loads(faults)]
     scenario = Scenario(name="faults", faults=given, file=file, controller=dict(chosen))
     system = assemble(scenario, slaves := make_slaves(scenario, None, Messages()))

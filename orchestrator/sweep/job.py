@@ -78,7 +78,7 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     theirs = _theirs(data)
     kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in models.items()}
     values = chunk.values[number].tolist()
-    for name, value in _told_targets(job, values):
+    for name, value in _controller_targets(job, values):
         data["controller"][name] = value
     for owner, name, place, value in zip(job.owners, job.names, job.places, values, strict=True):
         if owner in theirs:
@@ -109,7 +109,7 @@ def _theirs(data: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return {name: data[name] if name in MODELS else item["parameters"] for name, item in slaves.items() if item["file"]}
 
 
-def _told_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
+def _controller_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
     """Return (parameter, value) of the controller that follow a target which differs from run to run.
 
     A controller that was told another target than the scenario's keeps to that.
@@ -150,7 +150,7 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.longest)
     every = {owner: np.full(count, scenario.decimation.get(owner, 1), dtype=np.int64) for owner in MODELS}
     controls = {item.name: place for place, item in enumerate(variables(scenario.models["controller"].params))}
-    for name, values in _told_targets(job, list(chunk.values.T)):
+    for name, values in _controller_targets(job, list(chunk.values.T)):
         parameters[:, starts["controller"] + controls[name]] = values
     is_told = scenario.stop_time is not None or "stop_time" in job.names
     for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):
@@ -194,7 +194,7 @@ def job_to(job: Job) -> dict[str, Any]:
 def job_from(data: dict[str, Any]) -> Job:
     """Return the job that :func:`job_to` wrote, its parameters placed as the models have them now."""
     if "target" not in data["scenario"]:
-        data = {**data, "scenario": {**data["scenario"], "target": _told_target(data["scenario"]["controller"])}}
+        data = {**data, "scenario": {**data["scenario"], "target": _controller_target(data["scenario"]["controller"])}}
     named = _places_by_name(data["scenario"])
     fields = zip(data["owners"], data["names"], data["places"], strict=True)
     places = [named[owner][name] if owner in named else int(place) for owner, name, place in fields]
@@ -216,7 +216,7 @@ def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:
     return Measure(how, signal, None if when is None else When(when[0], tuple(when[1])))
 
 
-def _told_target(controller: dict[str, Any]) -> dict[str, float]:
+def _controller_target(controller: dict[str, Any]) -> dict[str, float]:
     """Return the target of a table of an older version, which judged by what the controller was told."""
     starts = {item.name: float(item.start) for item in variables(MODELS["controller"].params)}
     return {name: float(controller.get(f"target.{name}", starts[f"target.{name}"])) for name in Target.model_fields}

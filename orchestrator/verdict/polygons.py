@@ -61,7 +61,7 @@ def _clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
     nearest = np.full(len(poses), np.inf)
     length, width = 0.5 * (car.front + car.rear), car.half_width
     for polygon in polygons:
-        corners = _seen(poses, np.array(polygon, dtype=float), car)
+        corners = _in_outline_frames(poses, np.array(polygon, dtype=float), car)
         gaps = _edge_gaps(corners, np.roll(corners, -1, axis=1), length, width).min(axis=1)
         gaps[_middle_inside(corners)] = 0.0
         touching = np.flatnonzero(gaps <= 0.0)
@@ -125,7 +125,7 @@ def _turn(points: Sequence[tuple[float, float]], a: int, b: int, c: int) -> floa
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-def _seen(poses: Array, points: Array, car: CarOutline) -> Array:
+def _in_outline_frames(poses: Array, points: Array, car: CarOutline) -> Array:
     """Return points (p, 2) in the frames of the outlines' middles, (n, p, 2)."""
     c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
     dx, dy = points[None, :, 0] - poses[:, 0, None], points[None, :, 1] - poses[:, 1, None]

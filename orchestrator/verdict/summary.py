@@ -212,7 +212,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
     outcome, reason = _outcome(recording, scenario, checks)
     events = _events(recording)
     many = f"only the first {MOST_EVENTS} changes of phase are listed" if len(events) == MOST_EVENTS else ""
-    said = (note, *_contact(recording, scenario, numbers), _told_otherwise(recording, scenario), many)
+    said = (note, *_contact(recording, scenario, numbers), _target_difference(recording, scenario), many)
     return Summary(
         scenario=scenario.name,
         overrides=scenario.overrides,
@@ -269,7 +269,7 @@ def _events(recording: Recording) -> list[Event]:
     ]
 
 
-def _told_otherwise(recording: Recording, scenario: Scenario) -> str:
+def _target_difference(recording: Recording, scenario: Scenario) -> str:
     """Return how the target that the controller is told differs from the scenario's; empty if it does not."""
     told = pose_of(recording.parameters_of("controller"), "target")
     if scenario.target is None or told is None or told == scenario.target.pose:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from controller_fmu.adaptive.curves import SteeringLimits, arc_in, bend_of, line_in, s_curve, swing_way
-from controller_fmu.adaptive.route import curvature_at, drivable, foot_on, length_of, mirrored, point_at
+from controller_fmu.adaptive.route import curvature_at, drivable, foot_on, length_of, mirror_route, point_at
 from modelkit.vocabulary import Pose
 
 WHEEL = SteeringLimits(2.405, math.radians(30.0), 4.3)
@@ -86,7 +86,7 @@ def test_the_mirror_image_and_the_foot() -> None:
     bend = bend_of(4.5, 0.5)
     start = Pose(9.0, 3.0, 0.1)
     route = s_curve(start, 0.0, bend, bend, 0.0)
-    image = mirrored(route, -1.0, Pose(9.0, -3.0, -0.1), -1)
+    image = mirror_route(route, -1.0, Pose(9.0, -3.0, -0.1), -1)
     for way in (0.5, 3.0, 6.0):
         here, there = point_at(route, way).pose, point_at(image, way).pose
         assert (there.x, -there.y, -there.heading) == pytest.approx(here)

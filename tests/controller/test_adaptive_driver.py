@@ -7,14 +7,14 @@ import pytest
 from controller_fmu.adaptive.driver import (
     Driver,
     deceleration_of,
-    prompted,
+    on_stop_prompt,
     reaction_of,
-    seen_driving,
-    seen_stopping,
     shortest_way,
-    stopped,
     stopping_way,
-    told_to_stop,
+    update_at_standstill,
+    update_prompt,
+    update_while_driving,
+    update_while_stopping,
 )
 from controller_fmu.adaptive.params import BeliefParams
 
@@ -26,23 +26,23 @@ UNKNOWN = Driver()
 
 
 def drive(speeds: Any, driver: Any = UNKNOWN, advised: Any = 2.5) -> Any:
-    driver = prompted(driver, 0.0)
+    driver = update_prompt(driver, 0.0)
     for speed in speeds:
-        driver = seen_driving(driver, speed, advised, 0.005, BELIEF, DT)
+        driver = update_while_driving(driver, speed, advised, 0.005, BELIEF, DT)
     return driver
 
 
 def stop(driver: Any, reaction: Any, deceleration: Any, advised: Any = 2.5) -> Any:
     """Return the driver after a stop, and the way it took [m]."""
     speed, way = driver.speed, 0.0
-    driver = told_to_stop(driver, speed, advised, BELIEF)
+    driver = on_stop_prompt(driver, speed, advised, BELIEF)
     for k in range(1000):
         if k * 0.01 >= reaction:
             speed = max(0.0, speed - deceleration * 0.01)
         way += speed * 0.01
         if speed == 0.0:
-            return stopped(driver, BELIEF), way
-        driver = seen_stopping(driver, speed, 0.005, DT)
+            return update_at_standstill(driver, BELIEF), way
+        driver = update_while_stopping(driver, speed, 0.005, DT)
     raise AssertionError
 
 
@@ -84,9 +84,9 @@ def test_who_drives_faster_than_advised_does_not_obey() -> None:
 
 def test_who_comes_down_with_the_advice_slows_down() -> None:
     driver = drive([0.0] * 20 + [1.0] * 200)
-    assert not told_to_stop(driver, 1.0, 1.0, BELIEF).slows
-    assert not told_to_stop(driver, 1.0, 0.5, BELIEF).slows
-    assert told_to_stop(driver, 0.5, 0.5, BELIEF).slows
+    assert not on_stop_prompt(driver, 1.0, 1.0, BELIEF).slows
+    assert not on_stop_prompt(driver, 1.0, 0.5, BELIEF).slows
+    assert on_stop_prompt(driver, 0.5, 0.5, BELIEF).slows
 
 
 def test_the_shortest_way_is_that_of_a_stop_asked_for_when_he_sets_out() -> None:

@@ -26,7 +26,7 @@ from modelkit.car import CarUltrasonic
 from modelkit.geometry import NO_HIT, Point, cone_line
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
-from vehicle_fmu.ultrasonic import heard_distances
+from vehicle_fmu.ultrasonic import range_measurements
 
 PARAMS = ControllerParams()
 CAR = shape_of(PARAMS)
@@ -80,7 +80,7 @@ def heard_at(x: Any, y: Any) -> Any:
     """Return what the sensors of a car at the origin hear of a pole."""
     missing = len(SceneParams().boxes) - 1
     scene = SceneParams(boxes=(Obstacle(x, y, 0.0, 0.2, 0.2), *(Obstacle() for _ in range(missing))))
-    return heard_distances(HERE, scene, SENSORS, 0.08, 0)
+    return range_measurements(HERE, scene, SENSORS, 0.08, 0)
 
 
 @settings(max_examples=500)

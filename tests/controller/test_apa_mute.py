@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.apa.hearing.mute import MUTE, SLOWLY, WAIT, count_mute, is_waited_for, spared, usable
 from controller_fmu.apa.watch import Duty, Watch, watch
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, Listened, listened_on
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, Listened, update_sample
 from controller_fmu.registry import ControllerInput, ControllerParams
 
 PARAMS = ControllerParams()
@@ -67,7 +67,7 @@ def test_each_measurement_is_listened_to_once_however_seldom_data_is_exchanged(e
     for sample in range(2000):
         exchanged = math.floor(sample * 0.01 / exchange + 1e-9) * exchange
         measured = math.floor(exchanged / cycle + 1e-9)
-        state = listened_on(state, (float(measured),) * 12, sample * 10_000_000, 10_000_000, cycle)
+        state = update_sample(state, (float(measured),) * 12, sample * 10_000_000, 10_000_000, cycle)
         if state.fresh:
             heard.append(measured)
     assert heard[1:-1] == list(range(heard[1], heard[1] + len(heard) - 2))
@@ -79,6 +79,6 @@ def test_readings_that_stay_the_same_are_listened_to_too() -> None:
     state = Listened()
     times = []
     for sample in range(100):
-        state = listened_on(state, (1.0,) * 12, sample * 10_000_000, 10_000_000, 0.05)
+        state = update_sample(state, (1.0,) * 12, sample * 10_000_000, 10_000_000, 0.05)
         times += [sample * 10] if state.fresh else []
     assert times == [0, *range(60, 1000, 50)]

@@ -25,7 +25,7 @@ from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
-from vehicle_fmu.ultrasonic import UltrasonicParams, heard_distances
+from vehicle_fmu.ultrasonic import UltrasonicParams, range_measurements
 
 PARAMS = ControllerParams()
 SENSORS = CarUltrasonic()
@@ -45,7 +45,7 @@ def scene_of(boxes: Any, side: Any) -> Any:
 
 
 def inputs_at(true: Any, believed: Any, boxes: Any, side: Any) -> Any:
-    distances = heard_distances(true, scene_of(boxes, side), SENSORS, UltrasonicParams().kerb_height, 0)
+    distances = range_measurements(true, scene_of(boxes, side), SENSORS, UltrasonicParams().kerb_height, 0)
     return ControllerInput(odometry=believed, ultrasonic=distances)
 
 

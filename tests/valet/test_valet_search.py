@@ -31,7 +31,7 @@ from orchestrator.scenario.obstacle_map import box_corners
 from orchestrator.session.session import run_scenario
 from tests.valet.looks import look
 from vehicle_fmu.scene import Obstacle, SceneParams
-from vehicle_fmu.ultrasonic import heard_distances
+from vehicle_fmu.ultrasonic import range_measurements
 
 CAR = Car()
 LENGTH, WIDTH = 3.805, 1.65
@@ -61,7 +61,7 @@ def passed(boxes: Any, side: Any, noise: Any, heading: Any = 0.0) -> Any:
         pose = Pose(way, side * (2.0 + way * math.sin(heading)), side * heading)
         c, s = math.cos(pose.heading), math.sin(pose.heading)
         at = Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
-        reading = heard_distances(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
+        reading = range_measurements(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
         reading = 5.0 if reading >= 5.0 or draw.random() < 0.01 * (noise > 0.0) else reading + draw.gauss(0.0, noise)
         ear = listen(store, ear, which, at, reading, CAR.ultrasonic)
         if at.x > 0.0 and step % 10 == 0:

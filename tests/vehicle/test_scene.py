@@ -15,9 +15,9 @@ from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 from vehicle_fmu.ultrasonic import (
     UltrasonicParams,
     first_readings,
-    heard_distances,
     is_due,
     measure,
+    range_measurements,
 )
 
 EXACT = CarUltrasonic(min_range=0.0, resolution=0.0)
@@ -94,7 +94,7 @@ def test_things_move_and_are_heard_where_they_are() -> None:
     first = 6.0 - 0.2 - 3.205
     for t, gap in ((0.0, first), (2.0, first), (3.0, first - 0.5), (4.0, first - 1.0), (9.0, first - 1.0)):
         assert clearance(Pose(), Car(), scene, 0.08, int(t * 1e9)) == pytest.approx(gap, abs=1e-9)
-        heard = heard_distances(Pose(), scene, EXACT, 0.08, int(t * 1e9))
+        heard = range_measurements(Pose(), scene, EXACT, 0.08, int(t * 1e9))
         assert heard[1:3] == pytest.approx((gap, gap), abs=1e-9)
 
 

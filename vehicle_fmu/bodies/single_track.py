@@ -168,7 +168,7 @@ def step_single_track(
     rear, rear_force = _push(
         state.rear, rear_slip(motion, b), stiffness.rear, grip.rear, p.stiffness_rear / p.relaxation, h
     )
-    hold, along = _along(state.hold, motion.speed_x, _gripped(effort, grip, chassis), loads, chassis, h)
+    hold, along = _along(state.hold, motion.speed_x, _limit_by_grip(effort, grip, chassis), loads, chassis, h)
     forces = AxleForces(front_force, rear_force, along)
     change = accelerations(motion, wrench(forces, angle, stance, p.small_angles), gravity, chassis)
     return SingleTrackState(move_body(motion, change, b, h), front, rear, hold, forces)
@@ -187,7 +187,7 @@ def _push(
     return now, carcass * relax(deflection, -slip.across, rate, h + LOOK_AHEAD)
 
 
-def _gripped(effort: Effort, grip: Axles, chassis: ChassisParams) -> Effort:
+def _limit_by_grip(effort: Effort, grip: Axles, chassis: ChassisParams) -> Effort:
     """Return what of the effort the road takes [N]."""
     share = chassis.front_drive_share
     drive = clamp(effort.drive * share, -grip.front, grip.front)

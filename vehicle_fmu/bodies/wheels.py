@@ -73,7 +73,7 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
     force = tires.carcass_x * relax(wheel.u, slide_x, rate_x, ahead)
     slope = tires.carcass_x * hub.radius * ahead / (1.0 + ahead * rate_x)
     inertia = hub.inertia + h * hub.radius * slope
-    drive = contact.drive * _passed(slide_x if contact.drive > 0.0 else -slide_x, contact.along, hub)
+    drive = contact.drive * _traction_share(slide_x if contact.drive > 0.0 else -slide_x, contact.along, hub)
     free = wheel.spin + h * (drive - hub.radius * force) / inertia
     spin = move_towards(free, 0.0, h * contact.brake / inertia)
     return Wheel(
@@ -84,7 +84,7 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
     )
 
 
-def _passed(slide: float, along: float, hub: HubParams) -> float:
+def _traction_share(slide: float, along: float, hub: HubParams) -> float:
     """Return the share of the drive that traction control lets through at this wheel spin [m/s]."""
     allowed = hub.traction * max(abs(along), SLIP_REFERENCE_SPEED)
     return clamp(2.0 - slide / allowed, 0.0, 1.0)

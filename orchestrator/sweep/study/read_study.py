@@ -65,10 +65,10 @@ def bind(file: StudyFile) -> Study:
         name: [Requirement(**item) for item in requirements_of(given, Path.cwd())]
         for name, given in file.within.items()
     }
-    return Study(scenario, design, content, _seeded(file.scenario, sets, design), measures, within)
+    return Study(scenario, design, content, _seed_parameters(file.scenario, sets, design), measures, within)
 
 
-def _seeded(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
+def _seed_parameters(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
     """Return the parameters that take the run's seed: those that follow the scenario's."""
     probed = load_fitting(scenario, [*sets, f"seed={PROBE_SEED}"], Foreign()).scenario
     varied = {field.key for field in design.fields}

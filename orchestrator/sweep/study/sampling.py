@@ -44,7 +44,9 @@ def make_design(study: StudyFile, scenario: Scenario) -> Design:
             count = samples.n
             sampled += _sampled_columns(samples, stream == 1, [study.seed, stream], scenario)
     points = math.prod(len(column.values) for column in grid)
-    columns = _crossed(grid, count) + [_Column(column.fields, np.tile(column.values, points)) for column in sampled]
+    columns = _cross_columns(grid, count) + [
+        _Column(column.fields, np.tile(column.values, points)) for column in sampled
+    ]
     fields = [field for column in columns for field in column.fields]
     twice = sorted({field.key for field in fields if [item.key for item in fields].count(field.key) > 1})
     if twice:
@@ -78,7 +80,7 @@ def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None
             raise BadInput(f"a run steps the {owner} by more than {LONGEST_STEP:g} s", key="runs")
 
 
-def _crossed(grid: list[_Column], count: int) -> list[_Column]:
+def _cross_columns(grid: list[_Column], count: int) -> list[_Column]:
     points = np.array(list(itertools.product(*[column.values for column in grid])), dtype=np.float64)
     return [_Column(column.fields, np.repeat(points[:, place], count)) for place, column in enumerate(grid)]
 
@@ -94,7 +96,7 @@ def _grid_column(key: str, values: list[Any] | Range, scenario: Scenario) -> _Co
         raw = values
     if not raw:
         raise BadInput("an empty list of values", key=f"runs.grid: {key}")
-    return _Column(fields, np.array([_checked(item, fields) for item in raw]))
+    return _Column(fields, np.array([_check_value(item, fields) for item in raw]))
 
 
 def _sampled_columns(samples: Samples, latin: bool, seed: list[int], scenario: Scenario) -> list[_Column]:
@@ -110,7 +112,7 @@ def _sampled_columns(samples: Samples, latin: bool, seed: list[int], scenario: S
         if spread.choice is None:
             drawn = np.round(drawn) if fields[0].variable.kind is int else drawn
             for end in (drawn.min(), drawn.max()):
-                _checked(float(end), fields)
+                _check_value(float(end), fields)
         columns.append(_Column(fields, drawn))
     return columns
 
@@ -137,15 +139,15 @@ def _quantiles(chances: Array, spread: Spread, variable: Variable, key: str) -> 
 
 
 def _fields(key: str, scenario: Scenario) -> list[Field]:
-    return [find_field(name, scenario) for part in key.split(",") for name in _told_both(part.strip())]
+    return [find_field(name, scenario) for part in key.split(",") for name in _parameters_of_key(part.strip())]
 
 
-def _told_both(key: str) -> list[str]:
+def _parameters_of_key(key: str) -> list[str]:
     """Return what a key stands for: a parameter of the car is told both models."""
     return [f"{owner}.{key}" for owner in MODELS] if key.startswith("car.") else [key]
 
 
-def _checked(value: Any, fields: list[Field]) -> float:
+def _check_value(value: Any, fields: list[Field]) -> float:
     """Return a value that all of ``fields`` accept."""
     results = {float(scalar(value, field.variable._replace(name=field.key))) for field in fields}
     if len(results) != 1:

@@ -19,7 +19,9 @@ def write_runs_page(folder: Path, rows: list[dict[str, Any]]) -> Path:
     text = Template(PAGE_TEMPLATE.read_text(encoding="utf-8")).substitute(
         folder=escape(str(folder)),
         count=len(rows),
-        outcomes="".join(f"<option>{escape(name)}</option>" for name in outcomes),
+        outcomes="".join(
+            f'<option value="{escape(name)}">{escape(name.replace("_", " "))}</option>' for name in outcomes
+        ),
         rows="\n".join(_row(folder, row) for row in rows),
     )
     write_whole(page, text)
@@ -33,11 +35,12 @@ def _row(folder: Path, row: dict[str, Any]) -> str:
     target = f"{here}/{PAGE}" if (run / PAGE).is_file() else f"{here}/"
     log = f'<a href="{escape(here)}/{LOG}">log</a>' if (run / LOG).is_file() else ""
     words = " ".join(str(row[key]) for key in ("scenario", "overrides", "outcome", "path"))
+    outcome = escape(row["outcome"].replace("_", " "))
     cells = (
         f'<a href="{escape(target)}">{picture or escape(here)}</a>',
         escape(row["time"]),
         f'<a href="{escape(target)}">{escape(row["scenario"])}</a><br><code>{escape(row["overrides"])}</code>',
-        f'<b class="{escape(row["outcome"])}">{escape(row["outcome"])}</b><br>{escape(row["reason"])}',
+        f'<b class="{escape(row["outcome"])}">{outcome}</b><br>{escape(row["reason"])}',
         f"<code>{escape(row['command'])}</code><br>{escape(here)} {log}",
     )
     body = "".join(f"<td>{cell}</td>" for cell in cells)

@@ -46,6 +46,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return folder
 
 
+SERIOUS = """async () => (await axe.run({ runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"] })).violations
+  .filter(({ impact }) => impact === "serious" || impact === "critical")
+  .map(({ id, nodes }) => [id, nodes.map((node) => node.target.join(" "))])"""
+
+
 def opened(browser: Any, path: Any) -> Any:
     page = browser.new_page()
     asked, said = [], []
@@ -128,6 +133,26 @@ def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site: Any, 
             assert page.locator("math").count() == 7
             assert page.locator("math mfrac").first.bounding_box()["height"] > 15
         page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_code_and_search_have_contrast(scheme: Any, site: Any, browser: Any) -> None:
+    package = pytest.importorskip("axe_core_python")
+    (file,) = Path(package.__file__).parent.rglob("axe*.js")
+    context = browser.new_context(viewport={"width": 390, "height": 844}, bypass_csp=True, color_scheme=scheme)
+    for name in ("index", "sweeps"):
+        page = context.new_page()
+        page.goto((site / f"{name}.html").as_uri())
+        page.evaluate("() => document.querySelectorAll('iframe').forEach((node) => node.remove())")
+        if name == "index":
+            page.click("label[for=__search]")
+            page.keyboard.type("steering")
+            page.wait_for_selector(".md-search-result__item")
+        page.evaluate(file.read_text(encoding="utf-8"))
+        found = page.evaluate(SERIOUS)
+        assert found == [], name
+    context.close()
 
 
 def test_pages_of_laws_have_the_page_that_is_driven(site: Any) -> None:

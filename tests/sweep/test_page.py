@@ -135,6 +135,13 @@ def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder:
     assert table.row(rows[0])["limit_share"] == np.nanmax(table.column("limit_share"))
 
 
+def test_no_unit_is_written_as_1(table: Any) -> None:
+    text = study_page(table)
+    assert "[1]" not in text
+    assert " 1: " not in text
+    assert " 1, " not in text
+
+
 def test_maps_count_every_run_once(table: Any) -> None:
     shown = maps(table)
     assert [item.title for item in shown] == ["ntbptcwpt", "ntbpt"]

@@ -47,8 +47,9 @@ def success_map(shown: Map, word: str) -> str:
             count, good = int(shown.runs[row, column]), int(shown.done[row, column])
             if count:
                 low, high = wilson(good, count)
+                at_x, at_y = _with_unit(shown.x, column), _with_unit(shown.y, row)
                 note = (
-                    f"{shown.x.labels[column]} {shown.x.unit}, {shown.y.labels[row]} {shown.y.unit}: "
+                    f"{at_x}, {at_y}: "
                     f"{100.0 * good / count:.1f} % of {count} {word} (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
                 )
                 at = f'x="{across[column]:.2f}" y="{up[row + 1]:.2f}"'
@@ -58,6 +59,10 @@ def success_map(shown: Map, word: str) -> str:
                 named = f'class="cell" data-c="{column}" data-r="{row}"'
                 cells.append(f'<rect {named} {at} {size} fill="{fill}"><title>{html.escape(note)}</title></rect>')
     return _svg(cells + _axis_x(shown.x, across) + _axis_y(shown.y, up), f"Success map {shown.title}")
+
+
+def _with_unit(axis: Axis, cell: int) -> str:
+    return axis.labels[cell] if axis.unit == "1" else f"{axis.labels[cell]} {axis.unit}"
 
 
 def scale_bar(word: str) -> str:
@@ -91,7 +96,8 @@ def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, word
     width, full = (WIDTH - LEFT - RIGHT) / len(yes), 200.0 - TOP - BOTTOM
     bars = []
     for place, (a, b) in enumerate(zip(yes.tolist(), no.tolist(), strict=True)):
-        note = html.escape(f"{edges[place]:.4g} to {edges[place + 1]:.4g} {unit}: {a} {word}, {b} not")
+        ends = f"{edges[place]:.4g} to {edges[place + 1]:.4g}" + ("" if unit == "1" else f" {unit}")
+        note = html.escape(f"{ends}: {a} {word}, {b} not")
         x = LEFT + place * width
         for kind, count, below in (("yes", a, 0), ("no", b, a)):
             if count:
@@ -104,7 +110,7 @@ def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, word
         f'<text x="{LEFT - 6}" y="{TOP + full * (1 - share) + 4:.1f}" text-anchor="end">{tallest * share:.0f}</text>'
         for share in (0.0, 0.5, 1.0)
     ]
-    return _svg(bars + ticks + counts, f"{name} [{unit}]", 200.0)
+    return _svg(bars + ticks + counts, name if unit == "1" else f"{name} [{unit}]", 200.0)
 
 
 def _places(axis: Axis, first: float, last: float) -> list[float]:

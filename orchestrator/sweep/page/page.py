@@ -164,7 +164,8 @@ def _histograms(table: Table) -> str:
                 name == "min_clearance" and float(values.min()) >= NO_OBSTACLE_DISTANCE
             ):
                 continue
-            caption = f"<figcaption>{escape(name)} <span class='quiet'>[{unit}]</span></figcaption>"
+            shown = "" if unit == "1" else f" <span class='quiet'>[{unit}]</span>"
+            caption = f"<figcaption>{escape(name)}{shown}</figcaption>"
             figures.append(f"<figure>{caption}{histogram(values, good, name, unit, word(table))}</figure>")
     return _card(
         "Results",

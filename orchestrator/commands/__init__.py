@@ -12,7 +12,7 @@ COMMANDS = {
     "list": "list scenarios, parameters, signals, controllers, requirements, runs",
     "live": "write a page that runs the models in the browser",
     "migrate": "rewrite names of an earlier version in scenarios, studies and tests",
-    "new": "create a controller, a vehicle or a CI workflow from a template",
+    "new": "create a controller, vehicle, scenario, study or CI workflow",
     "recover": "repair an incomplete log",
     "replay": "repeat a row of a study",
     "report": "replay page of a run",

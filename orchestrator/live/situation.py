@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from fmus.compiled_batch import FAULTS
+from orchestrator.live.layout import layout_data
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
@@ -46,7 +47,7 @@ def situation(scenario: Scenario) -> dict[str, Any]:
     measures = measures_for(scenario)
     ending = scenario.stop_condition
     return {
-        **{key: getattr(scenario, key) for key in ("name", "title", "description", "task", "expect", "seed")},
+        **{key: getattr(scenario, key) for key in ("name", "title", "description", "task", "seed")},
         "source": scenario.file and _shipped_name(scenario),
         "overrides": scenario.overrides,
         "times": [
@@ -58,6 +59,7 @@ def situation(scenario: Scenario) -> dict[str, Any]:
         **{owner: getattr(scenario, owner) for owner in ("vehicle", "controller")},
         "target": scenario.target.model_dump() if scenario.target else None,
         "slot": scenario.slot.model_dump() if scenario.slot else None,
+        "layout": layout_data(scenario),
         "obstacles": scenario.obstacles,
         "maps": map_of(scenario).items() <= scenario.controller.items(),
         "faults": _faults(scenario),

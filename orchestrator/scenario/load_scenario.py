@@ -15,7 +15,7 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Parameter, Scenario, Target
-from orchestrator.scenario.slot_layout import KEY, expand_layouts
+from orchestrator.scenario.slot_layout import KEY, SlotLayout, expand_layouts, layout_of
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
@@ -75,6 +75,15 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     except ValidationError as error:
         raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
     return _with_parameters(scenario, more).model_copy(update={"controller": _told(scenario)})
+
+
+def slot_layout_of(scenario: Scenario) -> SlotLayout | None:
+    """Return the ``slot_layout`` that a scenario's file, its bases and ``--set`` give; None without one or a file."""
+    path = Path(scenario.file)
+    if not scenario.file or not path.is_file():
+        return None
+    sets = [f"{key}={value}" for key, value in scenario.overrides.items() if key.partition(".")[0] == KEY]
+    return layout_of([*_layers(path, ()), (_set_layer(sets, ()), "--set")])
 
 
 def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:

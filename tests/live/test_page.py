@@ -261,7 +261,7 @@ def test_a_parameter_is_named_by_its_meaning_with_a_rounded_range(page: Any) -> 
         assert label
         assert label != code
         assert meaning.startswith(code)
-        assert not re.search(r"\d[.\d]*\d{5}|\d (?:to|1)$| 1$", meaning), meaning
+        assert not re.search(r"\d[.\d]*\d{5}|\d{6}|\d (?:to|1)$| 1$", meaning), meaning
     assert "0.573 to 5730 deg/s" in pins.nth(1).locator(".meaning").inner_text()
 
 
@@ -299,6 +299,62 @@ def test_the_exported_scenario_comes_to_the_end_of_the_page(page: Any, tmp_path:
     assert usual is not None
     assert dragged.pose != usual.pose
     agrees(ghost(page), summary)
+
+
+VALUES = """(names) => names.map((name) => live.lab.situation.get(name))"""
+ANGLED = ["kind=angled", "angle=60 deg", "side=left", "row=2", "origin.heading=40 deg", "origin.x=3", "kerb={}"]
+
+
+def follows(page: Any, path: Path) -> Any:
+    """Return the scenario that the page exports, after all that slot_layout generates was compared with the page."""
+    page.wait_for_function("() => !window.live.isDue")
+    path.write_text(page.input_value("#yaml"), encoding="utf-8")
+    scenario = load_scenario(str(path))
+    assert scenario.slot is not None
+    assert scenario.target is not None
+    expected = {f"vehicle.{name}": value for name, value in scenario.vehicle.items() if name.startswith("scene.")}
+    for owner, values in (("slot", scenario.slot), ("target", scenario.target), ("controller.target", scenario.target)):
+        expected |= {f"{owner}.{name}": value for name, value in values.model_dump().items()}
+    found = dict(zip(expected, page.evaluate(VALUES, list(expected)), strict=True))
+    assert found == pytest.approx(expected, rel=0.0, abs=1e-9)
+    return scenario
+
+
+def test_a_slot_that_is_dragged_takes_neighbours_kerb_and_target_along(page: Any, tmp_path: Path) -> None:
+    page.select_option("#scenario", "apa-parallel")
+    usual = load_scenario("apa-parallel")
+    assert usual.slot is not None
+    drag(page, "slot", 0.5, -0.25)
+    moved = follows(page, tmp_path / "dragged.yaml")
+    assert moved.slot.x == pytest.approx(usual.slot.x + 0.5, abs=0.05)
+    for name in ("scene.boxes[1].x", "scene.boxes[2].x", "scene.kerbs[1].x1"):
+        assert moved.vehicle[name] - usual.vehicle[name] == pytest.approx(moved.slot.x - usual.slot.x)
+    fill(page, "slot_layout.length", "7")
+    assert follows(page, tmp_path / "longer.yaml").slot.length == 7.0
+    drag(page, "target", 0.25, 0.0)
+    assert follows(page, tmp_path / "target.yaml").target.x > moved.target.x + 0.5
+    page.evaluate("() => { live.lab.situation.set('car.width', 1.7); live.changed(); }")
+    assert follows(page, tmp_path / "car.yaml").vehicle["car.width"] == 1.7
+    assert page.evaluate("() => live.lab.situation.set('slot.length', 4)").startswith("slot.length follows slot_layout")
+
+
+def test_the_handle_of_a_slot_says_what_it_takes_along(page: Any) -> None:
+    for name, said in (("guo2015-case4", "no slot_layout"), ("apa-parallel", "with its neighbours")):
+        page.select_option("#scenario", name)
+        page.evaluate("() => live.draw(performance.now())")
+        page.mouse.move(*handle(page, "slot"))
+        assert said in page.get_attribute("#view", "title")
+
+
+def test_an_angled_row_follows_its_layout(tmp_path: Path, show: Any) -> None:
+    scenario = load_scenario("apa-parallel", ["car=zhang2022", *(f"slot_layout.{item}" for item in ANGLED)])
+    page, _ = show(written(tmp_path, [scenario]), "", 1440, 900)
+    for name, value in (("origin.heading", -0.3), ("origin.y", 2.0), ("length", 3.5), ("depth", 5.5)):
+        page.evaluate("([name, value]) => live.lab.situation.set(name, value)", [f"slot_layout.{name}", value])
+        page.evaluate("() => live.changed()")
+        follows(page, tmp_path / "turned.yaml")
+    page.evaluate("() => { live.lab.situation.set('car.steering.rate_limit', 5); live.changed(); }")
+    assert follows(page, tmp_path / "car.yaml").car == "zhang2022"
 
 
 def handle(page: Any, prefix: Any) -> Any:

@@ -125,3 +125,16 @@ def test_a_slot_that_contradicts_the_scene_is_reported(sets: list[str]) -> None:
 
 def test_no_shipped_scenario_contradicts_itself() -> None:
     assert [text for name in scenario_names() for text in implausible(load_scenario(name))] == []
+
+
+def test_a_part_of_the_layout_is_set_by_its_name_from_file_and_command(tmp_path: Path) -> None:
+    path = tmp_path / "moved.yaml"
+    path.write_text("extends: apa-parallel\nslot_layout: {origin.y: 1, neighbours.setback: 10 cm}\n")
+    scenario = load_scenario(str(path), ["slot_layout.origin.x=2"])
+    usual = load_scenario("apa-parallel")
+    assert scenario.slot is not None
+    assert usual.slot is not None
+    assert (scenario.slot.x, scenario.slot.y) == pytest.approx((usual.slot.x + 2.0, usual.slot.y + 1.0))
+    assert scenario.vehicle["scene.boxes[1].y"] == pytest.approx(float(usual.vehicle["scene.boxes[1].y"]) + 0.9)
+    with pytest.raises(BadInput, match=r"origin\.z"):
+        load_scenario("apa-parallel", ["slot_layout.origin.z=2"])

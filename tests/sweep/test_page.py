@@ -1,6 +1,7 @@
 """What a study's page and its numbers say."""
 
 import json
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -136,10 +137,9 @@ def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder:
 
 
 def test_no_unit_is_written_as_1(table: Any) -> None:
-    text = study_page(table)
-    assert "[1]" not in text
-    assert " 1: " not in text
-    assert " 1, " not in text
+    text = re.sub(r"<script.*?</script>", "", study_page(table), flags=re.DOTALL)
+    assert "shifts" in text
+    assert not re.findall(r"[ >]\[1\]|\d 1[:,] ", text)
 
 
 def test_maps_count_every_run_once(table: Any) -> None:

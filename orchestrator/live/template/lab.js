@@ -48,7 +48,7 @@ class Lab {
     const run = whole.run(situation.params(), times, every);
     const took = performance.now() - begun;
     const start = situation.pose("vehicle.start"), origin = [Math.round(start[0]), Math.round(start[1])];
-    return { history: wholeHistory(this.engine, this.seen, situation.still(origin), run), took, ...evaluated(run.row, situation, this.table) };
+    return { history: wholeHistory(this.engine, this.seen, situation.still(origin), run), took, ...judged(run.row, situation, this.table) };
   }
 }
 

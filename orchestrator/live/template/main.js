@@ -38,9 +38,10 @@ class Page {
   poses() {
     const { situation } = this.lab;
     if (!this.drive.isFresh) return [];
-    const found = [["vehicle.start", situation.pose("vehicle.start")]];
-    if (situation.target) found.push(["target", situation.target]);
-    if (situation.slot) found.push(["slot", situation.slot.slice(0, 3), 0.5 * situation.slot[3]]);
+    const found = [["vehicle.start", situation.pose("vehicle.start"), 0, "Start"]];
+    if (situation.target) found.push(["target", situation.target, 0, "Target"]);
+    const text = situation.layout ? "Slot, with its neighbours, kerb and target" : "Slot alone: neighbours, kerb and target stay, because the scenario has no slot_layout";
+    if (situation.slot) found.push(["slot", situation.slot.slice(0, 3), 0.5 * situation.slot[3], text]);
     return found;
   }
 
@@ -252,7 +253,7 @@ async function start() {
   document.documentElement.classList.toggle("embedded", only.length > 0);
   tabs();
   page.load(name, changes, wrong);
-  page.stage = new Stage(page.drawn, $("view"), (prefix, pose) => { AXES.forEach((axis, i) => lab.situation.set(`${prefix}.${axis}`, pose[i])); page.changed(); });
+  page.stage = new Stage(page.drawn, $("view"), (prefix, pose) => { if (prefix === "slot") lab.situation.moveSlot(pose); else AXES.forEach((axis, i) => lab.situation.set(`${prefix}.${axis}`, pose[i])); page.changed(); });
   page.scene = page.stage;
   page.paint = () => { page.key = ""; page.map.draw(); };
   page.show = page.paint;

@@ -3,6 +3,7 @@
 const AXES = ["x", "y", "heading"];
 const SLOT = [...AXES, "length", "width"];
 const BOX = [...SLOT, "appear_at", "disappear_at", "speed_x", "speed_y", "moves_at", "halts_at"];
+const FARTHEST_END = 1e6; // of a range that bounds nothing
 const FRAME = 0.1, LONGEST = 60; // s: between two pictures of a thing that moves, and how long it is followed
 
 class Situation {
@@ -21,6 +22,8 @@ class Situation {
     this.roots = new Map(); // parameter that is told -> what it is told
     for (const name of AXES) if (data.target) this.tell(truth("target", name, data.target[name]), [`controller.target.${name}`]);
     for (const name of SLOT) if (data.slot) this.tell(truth("slot", name, data.slot[name]), []);
+    this.layout = data.layout;
+    if (this.layout) this.layout.names.forEach((name, i) => this.tell(ofLayout(name, this.layout.start[i]), []));
     for (const item of [...this.known.values()].filter(({ name }) => name.startsWith("vehicle.car.")))
       this.tell({ ...item, name: item.name.replace("vehicle.", ""), place: -1 }, [item.name, item.name.replace("vehicle.", "controller.")]);
     this.base = new Float64Array(place);
@@ -37,14 +40,43 @@ class Situation {
 
   get(name, changes = this.changes) {
     if (name in changes) return changes[name];
-    const root = this.roots.get(name);
-    return root in changes ? changes[root] : this.known.get(name).start;
+    const root = this.roots.get(name), laid = this.laidOut(changes);
+    return root in changes ? changes[root] : laid.get(root) ?? laid.get(name) ?? this.known.get(name).start;
+  }
+
+  // Name -> value of what a changed slot_layout generates: orchestrator/live/layout.py.
+  laidOut(changes = this.changes) {
+    const { layout } = this, found = new Map();
+    if (!layout || !layout.names.some((name) => name in changes)) return found;
+    const key = layout.names.map((name) => changes[name]).join();
+    if (key === this.laidKey) return this.laid;
+    this.laidKey = key;
+    this.laid = found;
+    const [length, depth, ...origin] = layout.names.map((name, i) => changes[name] ?? layout.start[i]), by = [length - layout.start[0], depth - layout.start[1]];
+    const at = ([value, ...slopes]) => value + slopes[0] * by[0] + slopes[1] * by[1], round = (value) => Number(value.toFixed(12));
+    for (const [x, y, heading, u, v] of layout.points) {
+      moved(origin, at(u), at(v)).forEach((value, i) => found.set([x, y][i], round(value)));
+      if (heading) found.set(heading, this.known.get(heading).start + (origin[2] - layout.start[4]));
+    }
+    for (const [name, ...value] of layout.sizes) found.set(name, round(at(value)));
+    return found;
+  }
+
+  // Whether the slot's own values follow slot_layout and are not to be changed apart.
+  follows(name) { return Boolean(this.layout) && name.startsWith("slot."); }
+
+  // Move the slot; with a slot_layout all that it generates follows.
+  moveSlot(pose) {
+    if (!this.layout) { AXES.forEach((axis, i) => this.set(`slot.${axis}`, pose[i])); return; }
+    const origin = this.pose("slot_layout.origin"), slot = this.pose("slot"), [u, v] = inFrame(origin, slot), [x, y] = moved(pose, u, v);
+    [[x, 3], [y, 3], [origin[2] + pose[2] - slot[2], 4]].forEach(([value, digits], i) => this.set(`slot_layout.origin.${AXES[i]}`, Number(value.toFixed(digits))));
   }
 
   // What is wrong with a value, "" if nothing.
   wrong(name, value) {
     const item = this.known.get(name);
     if (!item) return `there is no parameter ${name}`;
+    if (this.follows(name)) return `${name} follows slot_layout: change ${this.layout.names.join(", ")}`;
     const range = rangeText(item);
     if (!Number.isFinite(value)) return `not a number; ${name} takes ${range}`;
     if (item.kind !== "float" && !Number.isInteger(value)) return `${name} takes a whole number`;
@@ -63,7 +95,10 @@ class Situation {
 
   params(changes = this.changes) {
     const found = Float64Array.from(this.base);
-    if (this.data.maps && Object.keys(changes).some((name) => name.startsWith("vehicle.scene."))) this.tellMap(found);
+    if (this.data.maps && Object.keys(changes).some((name) => name.startsWith("vehicle.scene.") || name.startsWith("slot_layout."))) this.tellMap(found);
+    const laid = this.laidOut(changes);
+    for (const [name, value] of laid) if (this.known.get(name).place >= 0) found[this.known.get(name).place] = value;
+    for (const [name, root] of this.roots) if (laid.has(root)) found[this.known.get(name).place] = laid.get(root);
     for (const [name, root] of this.roots) if (root in changes) found[this.known.get(name).place] = changes[root];
     for (const [name, value] of Object.entries(changes)) if (this.known.get(name).place >= 0) found[this.known.get(name).place] = value;
     return found;
@@ -129,9 +164,11 @@ class Situation {
     const lines = [`name: ${this.data.name}-live`, `extends: ${this.data.source || this.data.name}`];
     if (this.data.title) lines.push(`title: ${JSON.stringify(this.data.title)}`);
     const own = { ...this.data.overrides };
-    for (const [name, value] of Object.entries(this.changes)) Object.assign(own, this.withArray(name), { [name]: this.written(name, value) });
-    const owners = ["car", "target", "slot", "vehicle", "controller"];
-    if ("car" in own && Object.keys(own).some((key) => key.startsWith("car."))) { own["car.base"] = own.car; delete own.car; }
+    if (this.movesTarget()) for (const name of Object.keys(own).filter((key) => key.startsWith("slot_layout."))) delete own[name];
+    for (const [name, value] of this.toWrite()) Object.assign(own, this.withArray(name), { [name]: this.written(name, value) });
+    const owners = ["car", "slot_layout", "target", "slot", "vehicle", "controller"];
+    if (this.movesTarget()) own["target.reference_point"] = "rear_axle";
+    if ("car" in own && Object.keys(own).some((key) => key.startsWith("car."))) { own["car.extends"] = own.car; delete own.car; }
     for (const [key, text] of Object.entries(own)) if (!owners.includes(key.split(".")[0]) || key === "car") lines.push(`${key}: ${text}`);
     for (const owner of owners) {
       const names = Object.keys(own).filter((name) => name.startsWith(`${owner}.`));
@@ -139,6 +176,20 @@ class Situation {
     }
     return `${lines.join("\n")}\n`;
   }
+
+  // What is changed, as it is written: a target as a whole, because its base may give it by another point of the car,
+  // and with a target of its own what slot_layout generates, because a file gives only one of them.
+  toWrite() {
+    const changes = Object.entries(this.changes);
+    if (!this.movesTarget()) return changes;
+    const { points, sizes } = this.layout || { points: [], sizes: [] }, targets = AXES.map((axis) => `target.${axis}`);
+    const moves = [...Object.keys(this.changes), ...Object.keys(this.data.overrides)].some((name) => name.startsWith("slot_layout."));
+    const laid = moves ? [...points.flatMap((names) => names.slice(0, 3)), ...sizes.map(([name]) => name)].filter(Boolean) : [];
+    return [...laid.map((name) => [name, this.get(name)]), ...changes.filter(([name]) => !name.startsWith("slot_layout.")), ...targets.map((name) => [name, this.get(name)])];
+  }
+
+  // Whether the target is another one than the file's with these changes: a layout gives it by the outline of the car.
+  movesTarget() { return Object.keys(this.changes).some((name) => name.startsWith("target.") || (Boolean(this.layout) && name.startsWith("car."))); }
 
   // A scenario that gives the first element of an array gives the whole array: what else stands in that of `name`.
   withArray(name) {
@@ -163,9 +214,10 @@ class Situation {
 
 // The range of a parameter in the units of the page, its ends rounded to three digits.
 function rangeText(item) {
-  if (item.low === null && item.high === null) return "any value";
-  const [name, factor] = display(item.unit), end = (value) => (value === null ? "\u221e" : String(Number((value * factor).toPrecision(3))));
-  return `${item.low === null ? "\u2212\u221e" : end(item.low)} to ${end(item.high)}${name ? ` ${name}` : ""}`;
+  const isFree = (value) => value === null || Math.abs(value) >= FARTHEST_END;
+  if (isFree(item.low) && isFree(item.high)) return "any value";
+  const [name, factor] = display(item.unit), end = (value) => (isFree(value) ? "\u221e" : String(Number((value * factor).toPrecision(3))));
+  return `${isFree(item.low) ? "\u2212\u221e" : end(item.low)} to ${end(item.high)}${name ? ` ${name}` : ""}`;
 }
 
 // Boxes that stand, one after the other, in the place of one that moves.
@@ -185,4 +237,9 @@ function truth(owner, name, start) {
   const unit = name === "heading" ? "rad" : "m", low = owner === "slot" && (name === "length" || name === "width") ? 0.01 : null;
   const text = { x: "x", y: "y", heading: "heading", length: "length along its heading", width: "width across it" }[name];
   return { name: `${owner}.${name}`, unit, text: `${owner === "slot" ? "slot" : "where the car shall stand"}: ${text}`, kind: "float", low, high: null, states: null, source: "", place: -1, start };
+}
+
+function ofLayout(name, start) {
+  const text = { length: "slot with neighbours and kerb: length of the gap along the road", depth: "slot with neighbours and kerb: depth from the road", "origin.x": "slot with neighbours and kerb: x", "origin.y": "slot with neighbours and kerb: y", "origin.heading": "slot with neighbours and kerb: driving direction" }[name.slice("slot_layout.".length)];
+  return { name, unit: name.endsWith("heading") ? "rad" : "m", text, kind: "float", low: name.includes("origin") ? null : 0.01, high: null, states: null, source: "", place: -1, start };
 }

@@ -17,7 +17,9 @@ class Stage extends Scene {
     canvas.addEventListener("touchstart", (event) => { if (this.held) event.preventDefault(); }, { passive: false }); // or the page would scroll
     canvas.addEventListener("pointermove", (event) => {
       if (this.held) { stop(event); this.drag(event.offsetX, event.offsetY); return; }
-      canvas.style.cursor = this.handleAt(event.offsetX, event.offsetY) ? "move" : "";
+      const over = this.handleAt(event.offsetX, event.offsetY);
+      canvas.style.cursor = over ? "move" : "";
+      canvas.title = over ? over.text : "";
     }, { capture: true });
     for (const name of ["pointerup", "pointercancel"])
       canvas.addEventListener(name, (event) => { if (this.held) stop(event); this.held = null; }, { capture: true });
@@ -38,12 +40,12 @@ class Stage extends Scene {
     return [c * u - s * v, s * u + c * v];
   }
 
-  // Where what can be dragged has its middle and its nose.
+  // Where what can be dragged is moved and turned: a car by its middle and nose, a slot by its ends, beside its target.
   handles() {
     const { origin, car } = this.page.runs[0].scene;
-    return this.page.poses().map(([prefix, pose, reach]) => {
+    return this.page.poses().map(([prefix, pose, reach, text]) => {
       const place = [pose[0] - origin[0], pose[1] - origin[1], pose[2]], long = reach || car.front + 0.5;
-      return { prefix, pose, place, points: [["move", moved(place, reach ? 0 : 0.5 * (car.front - car.rear), 0)], ["turn", moved(place, long, 0)]] };
+      return { prefix, pose, place, text, points: [["move", moved(place, reach ? -0.8 * reach : 0.5 * (car.front - car.rear), 0)], ["turn", moved(place, long, 0)]] };
     });
   }
 

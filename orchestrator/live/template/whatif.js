@@ -71,7 +71,7 @@ class WhatIf {
   find() {
     const word = $("search").value.trim().toLowerCase(), box = $("found");
     const fits = (item) => word && !this.rows.has(item.name) && (item.name.toLowerCase().includes(word) || item.text.toLowerCase().includes(word));
-    const found = [...this.lab.situation.known.values()].filter((item) => fits(item) && this.lab.isUsed(item.name));
+    const found = [...this.lab.situation.known.values()].filter((item) => fits(item) && this.lab.isUsed(item.name) && !this.lab.situation.follows(item.name));
     box.replaceChildren(...found.slice(0, MOST_FOUND).map((item) => element("li", {}, element("button", { type: "button", on: { click: () => { $("search").value = ""; this.pin(item.name); } } },
       item.text, " ", element("code", { class: "quiet" }, item.name), element("span", { class: "quiet" }, ` \u00b7 ${quantity(item.start, item.unit)} \u00b7 ${rangeText(item)}`)))));
     $("found-count").textContent = !word ? "" : found.length > MOST_FOUND ? `${found.length} found, ${MOST_FOUND} shown` : `${found.length} found`;

@@ -9,7 +9,8 @@ from controller_fmu.zhang2022.params import ZhangSystemParams
 from controller_fmu.zhang2022.path import PathStatus, final_time
 from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.signals import QuinticPlan, ZhangOutput, ZhangSignals
-from controller_fmu.zhang2022.system import STOPPING_SHARE, ZhangState
+from controller_fmu.zhang2022.steering_rate import STOPPING_SHARE
+from controller_fmu.zhang2022.system import ZhangState
 
 
 def zhang_signals(state: ZhangState, params: ZhangSystemParams) -> ZhangSignals:

@@ -27,7 +27,7 @@ class QuinticParams(NamedTuple):
         float, Signal("m", "desired radius of both arcs; larger if the quintics need it", 0.5, 100.0, HOUSE)
     ] = 5.0
     curvature_share: Annotated[
-        float, Signal("1", "fraction of the maximum curvature that the path may use", 0.1, 1.0, HOUSE)
+        float, Signal("1", "fraction of the maximum curvature and steering rate that the path may use", 0.1, 1.0, HOUSE)
     ] = 0.95
 
 

@@ -69,6 +69,13 @@ class EndConditions(NamedTuple):
     """Deceleration at the target."""
 
 
+class Joints(NamedTuple):
+    """Where three quintics meet, in driving order."""
+
+    upper: Knot
+    lower: Knot
+
+
 class PathTried(NamedTuple):
     """The path found or refused, and its radius or the best one [m]."""
 
@@ -163,16 +170,29 @@ def over_time(start: Pose, ends: EndConditions) -> QuinticPath:
     speed, slowing = ends.speed, ends.slowing
     x = time_quintic(start.x, -c * ends.start_speed, -c * ends.gaining, -speed, slowing)
     y = time_quintic(start.y, -s * ends.start_speed, -s * ends.gaining, 0.0, 0.0)
+    return through_joints(start, Joints(knot_at(x, y, 1.0 / 3.0), knot_at(x, y, 2.0 / 3.0)))
+
+
+def through_joints(start: Pose, joints: Joints) -> QuinticPath:
+    """Return the three quintics y(x) from ``start`` through both joints to the origin; no path if one is too short."""
     high = Knot(start.x, start.y, math.tan(start.heading), 0.0)
-    upper = knot_at(x, y, 1.0 / 3.0)
-    lower = knot_at(x, y, 2.0 / 3.0)
-    if not 0.01 < lower.x < upper.x - 0.01 < high.x - 0.02:
+    if not 0.01 < joints.lower.x < joints.upper.x - 0.01 < high.x - 0.02:
         return QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
-    first = quintic_between(upper, high)
-    line = quintic_between(lower, upper)
-    last = quintic_between(Knot(0.0, 0.0, 0.0, 0.0), lower)
+    first = quintic_between(joints.upper, high)
+    line = quintic_between(joints.lower, joints.upper)
+    last = quintic_between(Knot(0.0, 0.0, 0.0, 0.0), joints.lower)
     peak = max(largest_curvature(last), largest_curvature(line), largest_curvature(first))
     return QuinticPath(PathStatus.FOUND, start, EMPTY, peak, first, line, last)
+
+
+def joints_of(path: QuinticPath) -> Joints:
+    """Return the points at which the three quintics of a path meet."""
+    return Joints(_knot_of(path.first), _knot_of(path.line))
+
+
+def _knot_of(piece: Quintic) -> Knot:
+    bend = 2.0 * piece.c2 / (piece.length * piece.length)
+    return Knot(piece.x0, piece.y0, piece.m0 / piece.length, bend)
 
 
 def at(path: QuinticPath, x: float) -> Derivatives:

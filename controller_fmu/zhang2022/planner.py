@@ -2,15 +2,17 @@
 
 First the paper's way: quintics through the ends of arc, line, arc of equal radii (``path.plan``). Where that path is
 too tight or touches a neighbour, quintics x(t), y(t) over a final time are searched on a grid of their speeds and
-accelerations at both ends, then two quintics y(x) over the place where they meet and the heading there. Of the paths
-that keep both limits the one of least curvature is taken.
+accelerations at both ends; the clear path of least curvature is refined until it keeps the limits of curvature and
+steering rate. Where that fails, two quintics y(x) are searched over the place where they meet and the heading there.
 """
 
 import math
+from typing import NamedTuple
 
-from controller_fmu.common.slot_clearance import Outline, SlotBounds, is_pose_clear
+from controller_fmu.common.slot_clearance import is_pose_clear
 from controller_fmu.zhang2022.path import (
     EMPTY,
+    STEEP,
     EndConditions,
     PathStatus,
     QuinticPath,
@@ -21,6 +23,7 @@ from controller_fmu.zhang2022.path import (
     plan,
 )
 from controller_fmu.zhang2022.quintic import quintic
+from controller_fmu.zhang2022.refinement import PathLimits, is_within, refined
 from controller_fmu.zhang2022.slot import is_path_clear
 from modelkit.vocabulary import Pose
 
@@ -42,36 +45,45 @@ FLATTEST, STEEPEST_SHARE = 1.0, 2.4
 """Headings tried, as multiples of the angle at which the target sees the start."""
 
 
-def plan_in_slot(start: Pose, radius: float, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
+class Searched(NamedTuple):
+    """The best clear path, if there is one, and whether a path within the curvature limit touches a neighbour."""
+
+    path: QuinticPath
+    blocked: bool
+
+
+def plan_in_slot(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
     """Return the path from ``start`` (slot frame) to the origin clear of the neighbours, or why there is none."""
-    path = _chosen(start, radius, curvature_limit, car, slot)
+    path = _chosen(start, radius, limits)
     return path._replace(length=length_of(path)) if path.status == PathStatus.FOUND else path
 
 
-def _chosen(start: Pose, radius: float, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
-    path = plan(start, radius, curvature_limit)
+def _chosen(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
+    car = limits.car
+    slot = limits.slot
+    path = plan(start, radius, limits.curvature)
     if not slot.known or path.status == PathStatus.BAD_START:
         return path
     if path.status == PathStatus.FOUND and is_path_clear(path, car, slot):
         return path
     if not is_pose_clear(start, car, slot) or not is_pose_clear(Pose(), car, slot):
         return QuinticPath(PathStatus.SLOT_BLOCKED, start, EMPTY, path.largest_curvature)
-    found = _over_time(start, curvature_limit, car, slot)
-    if found.status == PathStatus.FOUND:
-        return found
-    met = _joined(start, curvature_limit, car, slot)
-    if met.status == PathStatus.FOUND:
-        return met
-    is_blocked = found.status == PathStatus.SLOT_BLOCKED or met.status == PathStatus.SLOT_BLOCKED
-    blocked = path.status == PathStatus.FOUND or is_blocked
+    found = _over_time(start, limits)
+    over_time_path = refined(found.path, limits)
+    if is_within(over_time_path, limits):
+        return over_time_path
+    met = _joined(start, limits)
+    if is_within(met.path, limits):
+        return met.path
+    blocked = path.status == PathStatus.FOUND or found.blocked or met.blocked
     status = PathStatus.SLOT_BLOCKED if blocked else PathStatus.CURVATURE_LIMIT
     return QuinticPath(status, start, EMPTY, path.largest_curvature)
 
 
-def _over_time(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
-    """Return the clear path of least curvature among quintics over time; else whether any kept the curvature limit."""
+def _over_time(start: Pose, limits: PathLimits) -> Searched:
+    """Return the clear path of least curvature among quintics over time, within the curvature limit or not."""
     way = math.sqrt(start.x * start.x + start.y * start.y)
-    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
+    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
     blocked = False
     for first in range(SPEEDS):
         for last in range(SPEEDS):
@@ -84,20 +96,18 @@ def _over_time(start: Pose, curvature_limit: float, car: Outline, slot: SlotBoun
                         ACCELERATION_STEP * slowing * way,
                     )
                     path = over_time(start, ends)
-                    if path.largest_curvature <= best.largest_curvature:
-                        if is_path_clear(path, car, slot):
+                    if path.status == PathStatus.FOUND and path.largest_curvature < best.largest_curvature:
+                        if is_path_clear(path, limits.car, limits.slot):
                             best = path
-                        else:
+                        elif path.largest_curvature <= limits.curvature:
                             blocked = True
-    if best.status != PathStatus.FOUND and blocked:
-        return best._replace(status=PathStatus.SLOT_BLOCKED)
-    return best
+    return Searched(best, blocked)
 
 
-def _joined(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
-    """Return the clear path of least curvature of two quintics that meet; else whether any kept the curvature."""
+def _joined(start: Pose, limits: PathLimits) -> Searched:
+    """Return the clear path of least curvature of two quintics that meet, within the curvature limit."""
     seen = math.atan2(start.y, start.x)
-    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
+    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, limits.curvature)
     blocked = False
     for along in range(MEETING_POINTS):
         x = start.x * (NEAREST + (FARTHEST - NEAREST) * along / (MEETING_POINTS - 1.0))
@@ -109,10 +119,8 @@ def _joined(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds)
                 if largest_curvature(quintic(0.0, 0.0, 0.0, x, y, slope)) <= best.largest_curvature:
                     path = joined_at(start, x, y, slope)
                     if path.largest_curvature <= best.largest_curvature:
-                        if is_path_clear(path, car, slot):
+                        if is_path_clear(path, limits.car, limits.slot):
                             best = path
                         else:
                             blocked = True
-    if best.status != PathStatus.FOUND and blocked:
-        return best._replace(status=PathStatus.SLOT_BLOCKED)
-    return best
+    return Searched(best, blocked)

@@ -15,14 +15,11 @@ from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, ne
 from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.planner import plan_in_slot
+from controller_fmu.zhang2022.refinement import PathLimits
 from controller_fmu.zhang2022.slot import slot_bounds
+from controller_fmu.zhang2022.steering_rate import PlannedMotion, speed_before_target
 from modelkit.maths import move_towards
 from modelkit.vocabulary import Pose
-
-STOPPING_SHARE = 0.7
-"""Share of the ramp planned for stopping: what is left makes up for the lag of the speed."""
-FINAL_SPEED = 0.03
-"""Speed [m/s] left at the target, so that it is reached."""
 
 
 class ZhangState(NamedTuple):
@@ -92,8 +89,10 @@ def _planned(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
     start = to_slot(inputs.odometry, frame)
     quintic = params.zhang2022.quintic
     limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
-    slot = slot_bounds(params.zhang2022.slot, params.car)
-    path = plan_in_slot(start, quintic.radius, limit, outline_of(params.car), slot)
+    zhang = params.zhang2022
+    motion = PlannedMotion(car.wheelbase, zhang.speed, zhang.ramp, quintic.curvature_share * car.rate_limit)
+    limits = PathLimits(limit, motion, outline_of(params.car), slot_bounds(zhang.slot, params.car))
+    path = plan_in_slot(start, quintic.radius, limits)
     angle = frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     found = path.status == PathStatus.FOUND
     return ZhangState(
@@ -118,8 +117,7 @@ def _driven(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSy
         steering = steer(steering, state.path, state.reference, inputs.measured_speed, car, zhang.mpc)
         solved_ns = 0
     arrived = pose.x <= zhang.stop_distance
-    room = 2.0 * STOPPING_SHARE * zhang.ramp * max(0.0, pose.x)
-    wanted = -min(zhang.speed, math.sqrt(room) + FINAL_SPEED)
+    wanted = -speed_before_target(pose.x, zhang.speed, zhang.ramp)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
     return state._replace(

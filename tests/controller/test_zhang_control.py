@@ -4,11 +4,14 @@ import math
 
 import pytest
 
+from controller_fmu.interface import ParkingInput, Reason
 from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, prediction, steer, turned
-from controller_fmu.zhang2022.params import MpcParams, PidParams
+from controller_fmu.zhang2022.params import MpcParams, PidParams, ZhangSystemParams
 from controller_fmu.zhang2022.path import nearest, plan
+from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.qp import Status
+from controller_fmu.zhang2022.system import ZhangState, zhang_sample
 from modelkit.vocabulary import Pose
 
 CAR = FrontAxle(2.62, 0.57, 0.5)
@@ -79,3 +82,22 @@ def test_pid_does_not_wind_up() -> None:
     assert state.force == 50.0
     assert state.integral <= 0.01
     assert pid(state, -0.2, p, 0.01).force < 0.0
+
+
+@pytest.mark.parametrize(
+    ("pose", "speed", "wheel", "expected"),
+    [
+        (Pose(), 0.0, 0.0, (ZhangPhase.PARKED, Reason.NONE)),
+        (Pose(), 0.02, 0.0, (ZhangPhase.STRAIGHTEN, Reason.NONE)),
+        (Pose(), 0.0, 1.0, (ZhangPhase.STRAIGHTEN, Reason.NONE)),
+        (Pose(0.0, 0.5, 0.0), 0.0, 0.0, (ZhangPhase.FAILED, Reason.MISSED_TARGET)),
+        (Pose(0.0, 0.0, 0.2), 0.0, 0.0, (ZhangPhase.FAILED, Reason.MISSED_TARGET)),
+    ],
+)
+def test_parked_is_said_of_a_standing_car_with_its_wheels_straight_in_its_place(
+    pose: Pose, speed: float, wheel: float, expected: tuple[ZhangPhase, Reason]
+) -> None:
+    state = ZhangState(phase=ZhangPhase.STRAIGHTEN, path=PATH)
+    inputs = ParkingInput(odometry=pose, measured_speed=speed, steering_wheel_angle=wheel)
+    after = zhang_sample(state, inputs, ZhangSystemParams(), 10_000_000)
+    assert (after.phase, after.reason) == expected

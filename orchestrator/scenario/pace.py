@@ -1,17 +1,21 @@
-"""How long a run may take where its scenario does not say: a slow driver has as much time as the way needs."""
+"""How long a run may take where its scenario does not say: longer than the controller allows the parking itself."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from controller_fmu.common.monitor import PACE
 from modelkit.variables import variables
 from orchestrator.scenario.models import MODELS
 
 Array = NDArray[np.float64]
-SHORTEST = 60.0
-"""Stop time [s] for drivers of an ordinary pace."""
-WAY = 30.0
-"""Way [m] that the slowest speed of the driver's profile has time for: twice that of parking in three moves."""
+DURATION = "limit.duration"
+"""The controller's own limit on the time of a parking [s]; below ``PACE`` it counts by distance."""
+UNLIMITED = next(float(item.start) for item in variables(MODELS["controller"].params) if item.name == DURATION)
+"""Taken for a controller without such a limit."""
+STOPPING = 5.0
+"""Time [s] for the vehicle to stop after the controller has failed."""
 LONGEST = 3600.0
+"""Most [s] for the slowest driver, unless the controller's limit is longer."""
 SPEED_ERROR = "driver.speed_error"
 NAMES = tuple(
     item.name
@@ -22,13 +26,15 @@ NAMES = tuple(
 DEFAULTS = {item.name: float(item.start) for item in variables(MODELS["vehicle"].params) if item.name in NAMES}
 
 
-def stop_times(parameters: dict[str, Array]) -> Array:
-    """Return the stop time [s] of each run from the driver's speeds [m/s] by name (``NAMES``), (runs,) each.
+def stop_times(parameters: dict[str, Array], durations: Array) -> Array:
+    """Return the stop time [s] of each run, (runs,).
 
-    Long enough for ``WAY`` at the slowest speed of the profile that is not zero, and at least ``SHORTEST``.
+    From the driver's speeds [m/s] by name (``NAMES``) and the controller's limits on the time of a parking [s], (runs,)
+    each. A driver slower than ``PACE`` has as far to go as one at ``PACE``, as the controller counts it.
     """
     speeds = np.column_stack([values for name, values in parameters.items() if name != SPEED_ERROR])
     slowest = np.where(speeds > 0.0, speeds, np.inf).min(axis=1)
     slowest = slowest * (1.0 + np.minimum(0.0, parameters[SPEED_ERROR]))
     with np.errstate(divide="ignore"):
-        return np.clip(np.where(slowest > 0.0, WAY / slowest, SHORTEST), SHORTEST, LONGEST)
+        times = np.where(slowest > 0.0, durations * np.maximum(1.0, PACE / slowest), durations)
+    return np.minimum(times, np.maximum(LONGEST, durations)) + STOPPING

@@ -10,7 +10,7 @@ from modelkit.model import Model
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.pace import DEFAULTS, stop_times
+from orchestrator.scenario.pace import DEFAULTS, DURATION, UNLIMITED, stop_times
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
@@ -92,7 +92,7 @@ class Scenario(_ScenarioPart):
     task: Task = "park"
     """Purpose of the run: `park`; `drive` along a road or out of a slot; `open_loop`: to its stop time."""
     stop_time: Seconds | None = None
-    """When the run ends at the latest [s]; if not said, 60 s, or what 30 m take at the driver's slowest speed."""
+    """When the run ends at the latest [s]; if not said, 5 s more than the controller's ``limit.duration``."""
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
     decimation: dict[str, int] = {}
@@ -175,7 +175,7 @@ class Scenario(_ScenarioPart):
         if self.stop_time is not None:
             return self.stop_time
         given = {name: np.array([float(self.vehicle.get(name, start))]) for name, start in DEFAULTS.items()}
-        return float(stop_times(given)[0])
+        return float(stop_times(given, np.array([float(self.controller.get(DURATION, UNLIMITED))]))[0])
 
     @property
     def success(self) -> Outcome:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.pace import NAMES, stop_times
+from orchestrator.scenario.pace import DURATION, NAMES, UNLIMITED, stop_times
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.sweep.fields import TRUE_OWNERS
 from orchestrator.sweep.rows import measures_for
@@ -168,7 +168,9 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     for owner, _, place in job.seeded:
         parameters[:, starts[owner] + place] = seeds
     if not is_told:
-        stops = stop_times(_driver_speeds(scenario, parameters))
+        limit = controls.get(DURATION)
+        durations = np.full(count, UNLIMITED) if limit is None else parameters[:, starts["controller"] + limit]
+        stops = stop_times(_driver_speeds(scenario, parameters), durations)
     step_ns = np.round(steps * NS_PER_SECOND).astype(np.int64)
     stop_ns = np.round(stops * NS_PER_SECOND).astype(np.int64)
     return parameters, np.column_stack([step_ns, stop_ns, *every.values()])

@@ -1,4 +1,4 @@
-"""A slow driver is not cut off: the stop time follows the pace, a creeping car's time counts by its way."""
+"""The stop time follows the controller's limit and the driver's speed; a creeping car's time counts by its way."""
 
 import pytest
 
@@ -9,15 +9,18 @@ from orchestrator.scenario.load_scenario import load_scenario
 @pytest.mark.parametrize(
     ("sets", "expected"),
     [
-        ([], 60.0),
-        (["vehicle.driver.profile[1].speed=0.05"], 600.0),
-        (["vehicle.driver.profile[2].speed=0.1"], 300.0),
-        (["vehicle.driver.profile[1].speed=0.1", "vehicle.driver.speed_error=-0.5"], 600.0),
-        (["vehicle.driver.profile[1].speed=0", "vehicle.driver.profile[2].speed=0"], 60.0),
+        ([], 125.0),
+        (["vehicle.driver.profile[1].speed=0.05"], 725.0),
+        (["vehicle.driver.profile[2].speed=0.1"], 365.0),
+        (["vehicle.driver.profile[1].speed=0.1", "vehicle.driver.speed_error=-0.5"], 725.0),
+        (["vehicle.driver.profile[1].speed=0.0001"], 3605.0),
+        (["vehicle.driver.profile[1].speed=0", "vehicle.driver.profile[2].speed=0"], 125.0),
+        (["controller.limit.duration=40"], 45.0),
+        (["controller.limit.duration=3600"], 3605.0),
         (["vehicle.driver.profile[1].speed=0.05", "stop_time=20"], 20.0),
     ],
 )
-def test_the_stop_time_follows_the_slowest_speed_of_the_driver(sets: list[str], expected: float) -> None:
+def test_the_stop_time_is_beyond_the_controller_s_limit_at_the_driver_s_speed(sets: list[str], expected: float) -> None:
     assert load_scenario("guo2015-case4", sets).longest == pytest.approx(expected)
 
 

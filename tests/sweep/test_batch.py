@@ -302,7 +302,7 @@ def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, som
 def test_each_run_of_a_study_has_the_stop_time_of_its_driver(bind: Any) -> None:
     speeds = {"grid": {"vehicle.driver.profile[1].speed": [0.05, 0.2, 1.5]}}
     _, _, job, chunk = bind(runs=speeds)
-    assert (arrays(job, chunk)[1][:, 1] * 1e-9).tolist() == pytest.approx([600.0, 150.0, 60.0])
-    assert [chunk_scenario(job, chunk, number).longest for number in range(3)] == pytest.approx([600.0, 150.0, 60.0])
+    assert (arrays(job, chunk)[1][:, 1] * 1e-9).tolist() == pytest.approx([725.0, 185.0, 125.0])
+    assert [chunk_scenario(job, chunk, number).longest for number in range(3)] == pytest.approx([725.0, 185.0, 125.0])
     _, _, job, chunk = bind(runs=speeds, set={"stop_time": 40})
     assert (arrays(job, chunk)[1][:, 1] * 1e-9).tolist() == [40.0] * 3

@@ -23,7 +23,7 @@ from controller_fmu.zhang2022.path import (
     plan,
 )
 from controller_fmu.zhang2022.quintic import quintic
-from controller_fmu.zhang2022.refinement import PathLimits, is_within, refined
+from controller_fmu.zhang2022.refinement import PathLimits, is_within, refine
 from controller_fmu.zhang2022.slot import is_path_clear
 from modelkit.vocabulary import Pose
 
@@ -69,7 +69,7 @@ def _chosen(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
     if not is_pose_clear(start, car, slot) or not is_pose_clear(Pose(), car, slot):
         return QuinticPath(PathStatus.SLOT_BLOCKED, start, EMPTY, path.largest_curvature)
     found = _over_time(start, limits)
-    over_time_path = refined(found.path, limits)
+    over_time_path = refine(found.path, limits)
     if is_within(over_time_path, limits):
         return over_time_path
     met = _joined(start, limits)
@@ -82,7 +82,7 @@ def _chosen(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
 
 def _over_time(start: Pose, limits: PathLimits) -> Searched:
     """Return the clear path of least curvature among quintics over time, within the curvature limit or not."""
-    way = math.sqrt(start.x * start.x + start.y * start.y)
+    distance = math.sqrt(start.x * start.x + start.y * start.y)
     best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
     blocked = False
     for first in range(SPEEDS):
@@ -90,10 +90,10 @@ def _over_time(start: Pose, limits: PathLimits) -> Searched:
             for gaining in range(ACCELERATIONS):
                 for slowing in range(ACCELERATIONS):
                     ends = EndConditions(
-                        (LOWEST + SPEED_STEP * first) * way,
-                        ACCELERATION_STEP * gaining * way,
-                        (LOWEST + SPEED_STEP * last) * way,
-                        ACCELERATION_STEP * slowing * way,
+                        (LOWEST + SPEED_STEP * first) * distance,
+                        ACCELERATION_STEP * gaining * distance,
+                        (LOWEST + SPEED_STEP * last) * distance,
+                        ACCELERATION_STEP * slowing * distance,
                     )
                     path = over_time(start, ends)
                     if path.status == PathStatus.FOUND and path.largest_curvature < best.largest_curvature:

@@ -8,12 +8,12 @@ from controller_fmu.zhang2022.quintic import Knot
 from controller_fmu.zhang2022.slot import is_path_clear
 from controller_fmu.zhang2022.steering_rate import PlannedMotion, largest_wheel_rate
 
-ROUNDS = 40
-COORDINATES = 8
+MAX_ROUNDS = 40
+COORDINATE_COUNT = 8
 """Position, slope and bend of both joints."""
 STEP_X, STEP_Y, STEP_SLOPE, STEP_BEND = 0.3, 0.15, 0.1, 0.05
 """First steps [m, m, 1, 1/m]; halved when no coordinate helps any more."""
-FINEST = 0.05
+MIN_STEP_SHARE = 0.05
 """Smallest share of these steps."""
 LEAST_GAIN = 1e-4
 """A step that gains less is not taken."""
@@ -49,13 +49,13 @@ def is_within(path: QuinticPath, limits: PathLimits) -> bool:
     return path.status == PathStatus.FOUND and excess(path, limits) <= 1.0
 
 
-def refined(path: QuinticPath, limits: PathLimits) -> QuinticPath:
+def refine(path: QuinticPath, limits: PathLimits) -> QuinticPath:
     """Return the path, or a clear one nearer to the limits; it ends as soon as both are kept."""
     if path.status != PathStatus.FOUND:
         return path
     now = Refined(path, excess(path, limits), 1.0)
-    for _ in range(ROUNDS):
-        if now.excess > 1.0 and now.share > FINEST:
+    for _ in range(MAX_ROUNDS):
+        if now.excess > 1.0 and now.share > MIN_STEP_SHARE:
             now = _one_round(now, limits)
     return now.path
 
@@ -63,10 +63,10 @@ def refined(path: QuinticPath, limits: PathLimits) -> QuinticPath:
 def _one_round(now: Refined, limits: PathLimits) -> Refined:
     """Return what remains after each coordinate of the joints was moved to both sides once."""
     best = now
-    for number in range(COORDINATES):
+    for number in range(COORDINATE_COUNT):
         for side in (1.0, -1.0):
             if best.excess > 1.0:
-                joints = moved(joints_of(best.path), number, side * now.share)
+                joints = move_joint(joints_of(best.path), number, side * now.share)
                 path = through_joints(now.path.start, joints)
                 if path.status == PathStatus.FOUND and path.largest_curvature < best.excess * limits.curvature:
                     found = excess(path, limits)
@@ -77,14 +77,14 @@ def _one_round(now: Refined, limits: PathLimits) -> Refined:
     return now._replace(share=0.5 * now.share)
 
 
-def moved(joints: Joints, number: int, share: float) -> Joints:
+def move_joint(joints: Joints, number: int, share: float) -> Joints:
     """Return the joints with the so many-th coordinate moved by a share of its first step."""
     if number < 4:
-        return joints._replace(upper=_moved_knot(joints.upper, number, share))
-    return joints._replace(lower=_moved_knot(joints.lower, number - 4, share))
+        return joints._replace(upper=_move_knot(joints.upper, number, share))
+    return joints._replace(lower=_move_knot(joints.lower, number - 4, share))
 
 
-def _moved_knot(knot: Knot, number: int, share: float) -> Knot:
+def _move_knot(knot: Knot, number: int, share: float) -> Knot:
     if number == 0:
         return knot._replace(x=knot.x + share * STEP_X)
     if number == 1:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from controller_fmu.zhang2022.path import QuinticPath
 from controller_fmu.zhang2022.quintic import Quintic, shape
 
-PLACES = 32
+RATE_SAMPLES = 32
 """Places looked at along each quintic."""
 SHORTEST_STEP = 1e-6
 """Shorter steps [m] are of pieces that only join others."""
@@ -33,7 +33,7 @@ class Turning(NamedTuple):
     """Largest front-wheel rate [rad/s] so far, and where on the path that is."""
 
     rate: float
-    way: float
+    distance: float
     """From the start [m]."""
     angle: float
     """Front-wheel angle [rad]."""
@@ -56,19 +56,19 @@ def largest_wheel_rate(path: QuinticPath, motion: PlannedMotion) -> float:
 def _along(piece: Quintic, before: Turning, motion: PlannedMotion) -> Turning:
     """Return what is known after one more quintic, driven towards falling x."""
     rate = before.rate
-    way = before.way
+    distance = before.distance
     angle = before.angle
-    dx = piece.length / PLACES
-    for number in range(PLACES):
+    dx = piece.length / RATE_SAMPLES
+    for number in range(RATE_SAMPLES):
         middle = piece.x0 + piece.length - (number + 0.5) * dx
         point = shape(piece, middle - 0.5 * dx)
         slope = shape(piece, middle).slope
         step = dx * math.sqrt(1.0 + slope * slope)
-        from_start = math.sqrt(2.0 * motion.ramp * (way + 0.5 * step))
+        from_start = math.sqrt(2.0 * motion.ramp * (distance + 0.5 * step))
         speed = min(from_start, speed_before_target(middle, motion.speed, motion.ramp))
         turned = math.atan(motion.wheelbase * point.curvature)
         if step > SHORTEST_STEP:
             rate = max(rate, abs(turned - angle) / step * speed)
         angle = turned
-        way = way + step
-    return Turning(rate, way, angle)
+        distance = distance + step
+    return Turning(rate, distance, angle)

@@ -150,10 +150,11 @@ def _draw_path(axis: Any, recording: Recording, label: str, how: dict[str, Any],
     if scene:
         _draw_boxes(axis, recording)
     signals = recording.signals
+    axis.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], label=label, **how)
     for number, planned in enumerate(planned_paths(recording)):
         name = "planned" if scene and number == 0 else None
-        axis.plot(*planned.T, color="#888888", linestyle=":", linewidth=0.9, label=name)
-    axis.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], label=label, **how)
+        axis.plot(*planned.T, color="#ffffff", linewidth=0.5)
+        axis.plot(*planned.T, color="#b0401a", linestyle=":", linewidth=1.0, label=name)
     if scene:
         _draw_key_points(axis, recording)
 

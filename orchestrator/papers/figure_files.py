@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fmus.files import write_whole
-from orchestrator.drawing.run_figure import check_figure, save_figure
+from orchestrator.drawing.run_figure import check_figure, save_figure, styled
 from orchestrator.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.papers.result import Drive
 from orchestrator.text.errors import BadInput
@@ -27,7 +27,9 @@ def write_figures(paper: str, drive: Drive, folder: Path, dpi: int = 150) -> lis
     for item in figures:
         if item.draw is None:
             continue
-        figure = item.draw([drive(name) for name in item.scenarios])
+        runs = [drive(name) for name in item.scenarios]
+        with styled():
+            figure = item.draw(runs)
         for suffix in FORMATS:
             path = folder / f"{item.name}{suffix}"
             check_figure(path)

@@ -86,7 +86,7 @@ def guo_case(runs: list[Driven], printed: Sequence[tuple[float, float, float, fl
         heading.plot([at], [turned], label="printed", **PRINTED_DOT)
         path.plot([x0], [y0], label="printed", **PRINTED_DOT)
     speed.set(xlabel="t [s]\n(a)", ylabel="speed [m/s]")
-    wheel.set(ylabel="steering wheel [deg], thin")
+    wheel.set(ylabel="wheel [deg], thin")
     position.set(xlabel="t [s]\n(b)", ylabel="x [m]; y [m], thin")
     heading.set(xlabel="t [s]\n(c)", ylabel="heading [rad]")
     path.set(xlabel="x [m]\n(d)", ylabel="y [m]", aspect="equal")
@@ -118,9 +118,20 @@ def guo_points(_: list[Driven]) -> Figure:
         at = to_world(point_of_leg(leg, target.path, GuoParams()), target.frame)
         axis.plot([at.x], [at.y], "o", color="#000000", markersize=4, label=f"Q{number}")
         axis.plot([at.x, at.x + 0.7 * np.cos(at.heading)], [at.y, at.y + 0.7 * np.sin(at.heading)], color="#b0401a")
-        axis.annotate(f"Q{number}", (at.x, at.y), textcoords="offset points", xytext=(4, -10))
+        axis.annotate(f"Q{number}", (at.x, at.y), textcoords="offset points", xytext=(0, 6), ha="right")
     axis.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     return figure
+
+
+ARROW_BEND = 0.12
+"""Of an arrow: how far its middle is beside the straight line, as a share of its length."""
+
+
+def _on_arrow(start: tuple[float, float], end: tuple[float, float], share: float) -> tuple[float, float]:
+    """Return the point of a bent arrow (a quadratic Bezier curve) at ``share`` of it."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    bend = 2.0 * share * (1.0 - share) * ARROW_BEND
+    return start[0] + share * dx + bend * dy, start[1] + share * dy - bend * dx
 
 
 def state_chart(_: list[Driven], rows: Any, states: Any, guards: Any) -> Figure:
@@ -132,21 +143,25 @@ def state_chart(_: list[Driven], rows: Any, states: Any, guards: Any) -> Figure:
         for k, state in enumerate(members)
     }
     always = []
+    edges: dict[tuple[int, int], list[str]] = {}
     for row in rows:
         guard = guards(row[1]).name.lower().replace("_", " ")
-        if row[0] not in place:
+        if row[0] in place:
+            edges.setdefault((row[0], row[2]), []).append(guard)
+        else:
             always.append(f"any state, {guard}: {states(row[2]).name}")
-            continue
-        (x0, y0), (x1, y1) = place[row[0]], place[row[2]]
+    for (begin, end), names in edges.items():
+        (x0, y0), (x1, y1) = place[begin], place[end]
         arrow = {
             "arrowstyle": "->",
-            "connectionstyle": "arc3,rad=0.12",
-            "color": "#555555",
+            "connectionstyle": f"arc3,rad={ARROW_BEND:g}",
+            "color": "#777777",
             "shrinkA": 16,
             "shrinkB": 16,
         }
         axis.annotate("", (x1, y1), (x0, y0), arrowprops=arrow)
-        axis.text(0.62 * x0 + 0.38 * x1, 0.62 * y0 + 0.38 * y1, guard, fontsize=5, ha="center", color="#1f5fbf")
+        x, y = _on_arrow((x0, y0), (x1, y1), 0.33)
+        axis.text(x, y, "\n".join(names), fontsize=5, ha="center", va="center", color="#1f5fbf")
     for state in members:
         box = {"boxstyle": "round", "facecolor": "#ffffff", "edgecolor": "#000000"}
         axis.text(*place[int(state)], state.name, ha="center", va="center", fontsize=6, bbox=box)
@@ -154,6 +169,9 @@ def state_chart(_: list[Driven], rows: Any, states: Any, guards: Any) -> Figure:
     axis.text(0.0, -1.24, "; ".join(always), ha="center", fontsize=5)
     axis.axis("off")
     return figure
+
+
+SHOWN_AS = {"l1": "L1", "l2": "L2", "wanted_speed": "set speed"}
 
 
 def over_distance(runs: list[Driven], panels: Sequence[tuple[str, str, float]], span: tuple[float, float]) -> Figure:
@@ -165,11 +183,12 @@ def over_distance(runs: list[Driven], panels: Sequence[tuple[str, str, float]], 
             s = signals["controller.preview.s"]
             part = (s >= span[0]) & (s <= span[1])
             for name, (colour, dashes) in zip(names.split(), LINES, strict=False):
-                what = {"color": colour, "linestyle": dashes, "label": name.rpartition(".")[2], "linewidth": 0.9}
+                shown = SHOWN_AS.get(name.rpartition(".")[2], name.rpartition(".")[2])
+                what = {"color": colour, "linestyle": dashes, "label": shown, "linewidth": 0.9}
                 axis.plot(s[part], factor * signals[name][part], **what)
         axis.set(ylabel=label)
         if " " in names:
-            axis.legend(frameon=False, loc="upper right")
+            axis.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     axes[-1].set(xlabel="s [m]")
     return figure
 
@@ -185,12 +204,13 @@ def memberships(_: list[Driven]) -> Figure:
     )
     kinds += (("(c) front-wheel angle", p.steering_peaks, outputs), ("(d) force", p.force_peaks, outputs))
     for axis, (label, peaks, names) in zip(axes, kinds, strict=True):
-        x = np.linspace(-3.0, 3.0, 601)
+        x = np.linspace(-1.0, 1.0, 601) * max(3.0, peaks[-1])
         for k, name in enumerate(names):
             degree = np.interp(x, peaks, [1.0 if n == k else 0.0 for n in range(len(peaks))])
             axis.plot(x, degree, color="#000000", linewidth=0.8, label=name)
             axis.annotate(name, (peaks[k], 1.02), ha="center", annotation_clip=False, fontsize=6)
-        axis.set(xlabel=label, ylabel="degree", xlim=(-3.0, 3.0), ylim=(0.0, 1.1))
+        most = max(3.0, peaks[-1])
+        axis.set(xlabel=label, ylabel="degree", xlim=(-most, most), ylim=(0.0, 1.1))
     return figure
 
 
@@ -213,6 +233,7 @@ def rule_surfaces(_: list[Driven]) -> Figure:
         axis = figure.add_subplot(1, 2, place, projection="3d")
         axis.plot_wireframe(3.0 * a, 3.0 * b, np.reshape(values, a.shape), color="#1f5fbf", linewidth=0.5)
         axis.set(xlabel=labels[0], ylabel=labels[1], zlabel=labels[2])
+        axis.set_box_aspect(None, zoom=0.8)
     return figure
 
 
@@ -225,7 +246,14 @@ def target_road(_: list[Driven]) -> Figure:
     for piece in DEFAULT_ROAD:
         if piece.curvature:
             at = road_at(DEFAULT_ROAD, s + 0.5 * piece.length).pose
-            axis.annotate(f"{piece.curvature:g} 1/m", (at.x, at.y), fontsize=6)
+            axis.annotate(
+                f"{piece.curvature:g} 1/m",
+                (at.x, at.y),
+                textcoords="offset points",
+                xytext=(0, 8),
+                ha="center",
+                fontsize=6,
+            )
         s += piece.length
     axis.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     return figure
@@ -263,13 +291,13 @@ def hsic_panels(runs: list[Driven]) -> Figure:
     heading.plot(t, np.degrees(signals["vehicle.pose.heading"]), color="#000000", label="heading")
     on = np.where(signals["controller.hsic.stage"] == 2, 1.0, np.nan)
     tangent.plot(t, 100.0 * on * signals["controller.hsic.tangent_error"], color="#000000", label="off the tangent")
-    path.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], color="#000000", label="rear axle")
-    path.plot(*planned_paths(runs[0].recording)[-1].T, label="planned path", **TARGET)
+    path.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], color="#bbbbbb", linewidth=2.5, label="rear axle")
+    path.plot(*planned_paths(runs[0].recording)[-1].T, label="planned path", **(TARGET | {"color": "#000000"}))
     steering.set(xlabel="t [s]\n(a)", ylabel="front wheel [deg]", xlim=(0.0, t[-1]))
     heading.set(xlabel="t [s]\n(b)", ylabel="heading [deg]", xlim=(0.0, t[-1]))
     tangent.set(xlabel="t [s]\n(c)", ylabel="off the tangent [cm]", xlim=(0.0, t[-1]))
     path.set(xlabel="x [m]\n(d)", ylabel="y [m]", aspect="equal")
-    path.legend(frameon=False)
+    path.legend(frameon=False, loc="lower right")
     return figure
 
 

@@ -3,13 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from controller_fmu.common.monitor import PACE
 from modelkit.variables import variables
 from orchestrator.scenario.models import MODELS
 
 Array = NDArray[np.float64]
 DURATION = "limit.duration"
-"""The controller's own limit on the time of a parking [s]; below ``PACE`` it counts by distance."""
+"""The controller's own limit on the time of a parking [s]; below ``TIMED_SPEED`` it counts by distance."""
+TIMED_SPEED = 0.3
+"""The controllers count slower driving by distance [m/s]."""
 UNLIMITED = next(float(item.start) for item in variables(MODELS["controller"].params) if item.name == DURATION)
 """Taken for a controller without such a limit."""
 STOPPING = 5.0
@@ -30,11 +31,11 @@ def stop_times(parameters: dict[str, Array], durations: Array) -> Array:
     """Return the stop time [s] of each run, (runs,).
 
     From the driver's speeds [m/s] by name (``NAMES``) and the controller's limits on the time of a parking [s], (runs,)
-    each. A driver slower than ``PACE`` has as far to go as one at ``PACE``, as the controller counts it.
+    each. A driver slower than ``TIMED_SPEED`` has as far to go as one at ``TIMED_SPEED``, as the controller counts it.
     """
     speeds = np.column_stack([values for name, values in parameters.items() if name != SPEED_ERROR])
     slowest = np.where(speeds > 0.0, speeds, np.inf).min(axis=1)
     slowest = slowest * (1.0 + np.minimum(0.0, parameters[SPEED_ERROR]))
     with np.errstate(divide="ignore"):
-        times = np.where(slowest > 0.0, durations * np.maximum(1.0, PACE / slowest), durations)
+        times = np.where(slowest > 0.0, durations * np.maximum(1.0, TIMED_SPEED / slowest), durations)
     return np.minimum(times, np.maximum(LONGEST, durations)) + STOPPING

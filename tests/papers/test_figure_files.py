@@ -5,11 +5,13 @@ import json
 from pathlib import Path
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from orchestrator.cli import main
+from orchestrator.drawing.run_figure import styled
 from orchestrator.papers.drive import drive
 from orchestrator.papers.figure_files import write_figures
-from orchestrator.papers.paper_figures import FIGURES
+from orchestrator.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.papers.papers import papers
 from orchestrator.papers.result import CONCLUSION, Reproduction, Row, not_tested
 from orchestrator.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
@@ -42,6 +44,29 @@ def test_figures_of_a_paper_are_written_with_data_and_commands(tmp_path: Path) -
         rows = list(csv.DictReader(file))
     assert {row["line"] for row in rows} == {"car", "reference"}
     assert min(float(row["y"]) for row in rows if row["line"] == "reference") == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize(
+    "item", [item for item in FIGURES if item.draw is not None and not item.scenarios], ids=lambda item: item.name
+)
+def test_words_of_a_figure_are_inside_it_and_none_is_over_another(item: PaperFigure) -> None:
+    assert item.draw is not None
+    with styled():
+        figure = item.draw([])
+    FigureCanvasAgg(figure).draw()
+    texts = [text for axis in figure.axes for text in (*axis.texts, axis.xaxis.label, axis.yaxis.label)]
+    boxes = [(text.get_text(), text.get_window_extent()) for text in texts if text.get_text().strip()]
+    inside = figure.bbox
+    for words, box in boxes:
+        assert box.x0 > inside.x0 - 1.0, words
+        assert box.x1 < inside.x1 + 1.0, words
+        assert box.y0 > inside.y0 - 1.0, words
+        assert box.y1 < inside.y1 + 1.0, words
+    for number, (words, box) in enumerate(boxes):
+        for others, other in boxes[number + 1 :]:
+            across = min(box.x1, other.x1) - max(box.x0, other.x0)
+            along = min(box.y1, other.y1) - max(box.y0, other.y0)
+            assert min(across, along) < 1.0, f"{words} over {others}"
 
 
 def test_rows_as_csv_and_latex_and_their_total() -> None:

@@ -76,6 +76,15 @@ class Watched:
         return Watched(self.value._replace(**changes), self.name, self.seen)
 
 
+def unwrapped(value: Any) -> Any:
+    """Return outputs in which what is put out of a parameter or an input is that value itself."""
+    if isinstance(value, Watched):
+        return unwrapped(value.value)
+    if hasattr(value, "_fields"):
+        return type(value)(*(unwrapped(item) for item in value))
+    return tuple(unwrapped(item) for item in value) if isinstance(value, tuple) else value
+
+
 @cache
 def read_and_told(system: Any) -> Any:
     """Return the parameters and inputs that a scenario's run reads, and the outputs that it changes."""
@@ -95,7 +104,7 @@ def read_and_told(system: Any) -> Any:
         to_controller: Any = Watched(TO_CONTROLLER(told), "", heard)
         vehicle, told = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
         controller, asked = MODEL.stepper(None)(controller, to_controller, params, STEP_NS)
-        told_by |= {name for name, now, default in zip(names, flatten(asked), first, strict=True) if now != default}
+        told_by |= {name for name, now, default in zip(names, flatten(unwrapped(asked)), first, strict=True) if now != default}
         if is_over(asked.phase) and told.speed == 0.0:
             break
     return read, heard, told_by

@@ -75,7 +75,7 @@ def test_columns_that_broke_a_step_test_once_are_refused(columns: bytes, tmp_pat
 def test_finds_that_are_none_are_refused_in_a_line(notes: str, tmp_path: Path) -> None:
     (tmp_path / "odd.yaml").write_text("name: odd\nextends: guo2015-case4\n")
     (tmp_path / "counterexamples.json").write_text(notes)
-    answer = ask(["falsify", "--corpus", str(tmp_path)], 10.0)
+    answer = ask(["falsify", "--regression", str(tmp_path)], 10.0)
     assert not answer.mistake, answer.mistake
     assert answer.code == 2, answer
     assert answer.err.count("\n") == 1

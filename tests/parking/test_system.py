@@ -36,7 +36,7 @@ def test_it_parks_in_the_empty_bay_of_a_car_park(tmp_path: Path) -> None:
         "apa-perpendicular-real",
         tmp_path,
         scene={"boxes": cars},
-        target={"of": "front", "x": 1.8, "y": 0.0, "heading": math.pi / 2},
+        target={"reference_point": "front", "x": 1.8, "y": 0.0, "heading": math.pi / 2},
         slot={"x": 1.8, "y": -2.3, "heading": math.pi / 2, "length": 4.6, "width": 3.6},
     )
     assert main(["test", file, "--fmus", "native", "--out", str(tmp_path / "out")]) == 0

@@ -182,7 +182,12 @@ def test_a_journal_that_says_something_else_is_made_again(
     change: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shares, seeds = np.zeros((2, 1)), np.array([1, 2])
-    good = {"shares": shares, "seeds": seeds, "margins": np.array([0.1, -0.1]), "words": np.array(["a", "b"])}
+    good: dict[str, Any] = {
+        "shares": shares,
+        "seeds": seeds,
+        "margins": np.array([0.1, -0.1]),
+        "words": np.array(["a", "b"]),
+    }
     part = tmp_path / "000000.npz"
     np.savez(part, **good)
     found = _kept(part, shares, seeds)

@@ -104,7 +104,9 @@ def read_and_told(system: Any) -> Any:
         to_controller: Any = Watched(TO_CONTROLLER(told), "", heard)
         vehicle, told = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
         controller, asked = MODEL.stepper(None)(controller, to_controller, params, STEP_NS)
-        told_by |= {name for name, now, default in zip(names, flatten(unwrapped(asked)), first, strict=True) if now != default}
+        told_by |= {
+            name for name, now, default in zip(names, flatten(unwrapped(asked)), first, strict=True) if now != default
+        }
         if is_over(asked.phase) and told.speed == 0.0:
             break
     return read, heard, told_by

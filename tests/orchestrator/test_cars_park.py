@@ -73,7 +73,8 @@ def test_an_assist_that_believes_in_a_smaller_car_is_a_study() -> None:
 @pytest.mark.parametrize("of", ["rear_axle", "front", "rear", "left", "right", "middle"])
 def test_a_target_by_a_point_of_the_outline(of: str) -> None:
     own = load_scenario(
-        "apa-perpendicular", ["car=zhang2022", "target={x: 1.0, y: 2.0, heading: 90 deg}", f"target.reference_point={of}"]
+        "apa-perpendicular",
+        ["car=zhang2022", "target={x: 1.0, y: 2.0, heading: 90 deg}", f"target.reference_point={of}"],
     )
     assert own.target is not None
     x, y, heading = own.target.pose

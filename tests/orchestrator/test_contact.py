@@ -3,7 +3,7 @@
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -148,7 +148,7 @@ def test_a_vehicle_of_others_is_judged_by_its_poses(through_box: Any) -> None:
     blind = without(recording, "vehicle.clearance")
     assert summarize(blind, scenario, 0.0).penetration == pytest.approx(summary.penetration, abs=1e-9)
     lying = without(recording)
-    lying.signals["vehicle.clearance"] = np.full(len(recording.t), 1e9)
+    cast("dict[str, Any]", lying.signals)["vehicle.clearance"] = np.full(len(recording.t), 1e9)
     assert summarize(lying, scenario, 0.0).reason == "contact"
     unknown = summarize(without(recording, "vehicle.clearance", "vehicle.pose.x"), scenario, 0.0)
     assert (unknown.outcome, unknown.reason) == (

@@ -1,7 +1,7 @@
 """Measures, conditions and summary numbers: one table each, the same for one run and for many."""
 
 import math
-from typing import get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_what_the_models_do_not_have() -> None:
 
 def test_only_the_instants_that_count() -> None:
     run = recording(np.array([5.0, 1.0, -3.0, 2.0]))
-    run.signals["controller.phase"] = np.array([0.0, 2.0, 2.0, 3.0])
+    cast("dict[str, Any]", run.signals)["controller.phase"] = np.array([0.0, 2.0, 2.0, 3.0])
     meant = {"last": -3.0, "first": 1.0, "largest": -3.0, "greatest": 1.0, "smallest": -3.0, "travel": 4.0}
     for how, value in meant.items():
         assert measured(Measure(how, "vehicle.speed", When("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]

@@ -3,7 +3,7 @@
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -100,7 +100,7 @@ def test_a_car_that_still_moves_is_not_parked() -> None:
 def test_what_was_not_measured_is_not_met() -> None:
     blind = standing()
     for name in ("vehicle.speed", "vehicle.pose.x", "vehicle.pose.heading"):
-        del blind.signals[name]
+        del cast("dict[str, Any]", blind.signals)[name]
     limits = [limit for limit in CASE_4.requirements if limit.signal != "vehicle.speed"]
     found = summarize(blind, CASE_4.model_copy(update={"requirements": limits}), 1.0)
     assert found.outcome == "not_parked"
@@ -110,7 +110,7 @@ def test_what_was_not_measured_is_not_met() -> None:
 
 def test_a_controller_that_says_nothing_has_not_parked() -> None:
     silent = standing()
-    del silent.signals["controller.phase"]
+    del cast("dict[str, Any]", silent.signals)["controller.phase"]
     found = summarize(silent, CASE_4, 1.0)
     assert why(found) == ("not_parked", "the controller has no output phase, of which PARKED (9) says that it is done")
 

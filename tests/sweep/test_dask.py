@@ -89,7 +89,7 @@ def test_a_scheduler_that_does_not_answer(
 def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() -> None:
     distributed = pytest.importorskip("distributed")
     pytest.importorskip("cryptography")
-    import psutil
+    import psutil  # type: ignore[import-untyped]
 
     from orchestrator.sweep.dask_cluster import PrivateCluster
 

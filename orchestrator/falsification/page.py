@@ -107,13 +107,13 @@ def write_page(subject: Subject, result: FalsificationResult, out: Path) -> Path
     page = out / "falsify.html"
     cards = [_counterexamples(subject, result), _bounds(result), _influences(result), _ranges(subject)]
     body = BODY.format(
-        title=f"Hunt in {escape(subject.study.name)}",
+        title=f"Falsification of {escape(subject.study.name)}",
         subtitle=escape(f"Requirement: {subject.objective.text}. {result.runs} runs."),
         kind="bad" if result.broken else "good",
         verdict=f"{result.broken} runs break it" if result.broken else "nothing found",
         cards="".join(cards),
     )
-    write_whole(page, still_page(f"Hunt in {subject.study.name}", body, study_style()))
+    write_whole(page, still_page(f"Falsification of {subject.study.name}", body, study_style()))
     return page
 
 
@@ -126,7 +126,12 @@ def _counterexamples(subject: Subject, result: FalsificationResult) -> str:
         )
         command = f'<a href="counterexamples/{escape(counterexample.name)}.yaml">{escape(counterexample.name)}.yaml</a>'
         rows.append(
-            (command, escape(counterexample.run.words), needs or "nothing", f"{100.0 * counterexample.chance:.0f} %")
+            (
+                command,
+                escape(counterexample.run.words.replace("_", " ")),
+                needs or "nothing",
+                f"{100.0 * counterexample.chance:.0f} %",
+            )
         )
     text = "Each with as few disturbances as may be, each as mild as may be (in brackets: nominal). Run one: "
     text += "<code>apa run counterexamples/NAME.yaml</code>; the same bits as when it was found."
@@ -164,9 +169,9 @@ def _ranges(subject: Subject) -> str:
     rows = [
         (
             f"<code>{escape(item.name)}</code>",
-            (", ".join(dict.fromkeys(item.choices)) if item.choices else f"{item.low:g} to {item.high:g}")
+            (", ".join(dict.fromkeys(item.choices)) if item.choices else f"{item.low:.4g} to {item.high:.4g}")
             + _unit(item),
-            (item.choices[int(item.nominal)] if item.choices else f"{item.nominal:g}") + _unit(item),
+            (item.choices[int(item.nominal)] if item.choices else f"{item.nominal:.4g}") + _unit(item),
             escape(item.text),
         )
         for item in subject.space.factors

@@ -31,7 +31,8 @@ def write_runs_page(folder: Path, rows: list[dict[str, Any]]) -> Path:
 def _row(folder: Path, row: dict[str, Any]) -> str:
     run = Path(row["path"])
     here = Path(os.path.relpath(run, folder)).as_posix()
-    picture = f'<img loading="lazy" alt="" src="{escape(here)}/{PICTURE}">' if (run / PICTURE).is_file() else ""
+    said = escape(f"{row['scenario']}: {row['outcome'].replace('_', ' ')}")
+    picture = f'<img loading="lazy" alt="{said}" src="{escape(here)}/{PICTURE}">' if (run / PICTURE).is_file() else ""
     target = f"{here}/{PAGE}" if (run / PAGE).is_file() else f"{here}/"
     log = f'<a href="{escape(here)}/{LOG}">log</a>' if (run / LOG).is_file() else ""
     words = " ".join(str(row[key]) for key in ("scenario", "overrides", "outcome", "path"))
@@ -40,7 +41,7 @@ def _row(folder: Path, row: dict[str, Any]) -> str:
         f'<a href="{escape(target)}">{picture or escape(here)}</a>',
         escape(row["time"]),
         f'<a href="{escape(target)}">{escape(row["scenario"])}</a><br><code>{escape(row["overrides"])}</code>',
-        f'<b class="{escape(row["outcome"])}">{outcome}</b><br>{escape(row["reason"])}',
+        f'<b class="{escape(row["outcome"])}">{outcome}</b><br>{escape(row["reason"].replace("_", " "))}',
         f"<code>{escape(row['command'])}</code><br>{escape(here)} {log}",
     )
     body = "".join(f"<td>{cell}</td>" for cell in cells)

@@ -12,6 +12,7 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.log.read_log import read_log
+from orchestrator.report.found_runs import find_runs
 from orchestrator.session.provenance import git_commit
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
@@ -134,4 +135,14 @@ def test_a_page_of_runs_shows_pictures_and_escapes_titles(tmp_path: Path) -> Non
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert 'src="one/overview.png"' in page
     assert 'href="one/report.html"' in page
+    assert 'alt="demo: not parked"' in page
+    assert "not_parked</b>" not in page
     assert "<script>x" not in page
+
+
+def test_a_run_recorded_before_overrides_had_this_name_is_listed(tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_text(
+        '{"scenario": "demo", "changed": {"seed": "2"}, "outcome": "parked", "reason": "", "duration": 1}'
+    )
+    (row,) = find_runs(tmp_path)
+    assert row["overrides"] == "seed = 2"

@@ -13,7 +13,7 @@ from orchestrator.scenario.slot_layout import KEY, LayoutOrigin, SlotLayout, sce
 from orchestrator.scenario.target_point import as_rear_axle
 
 SIZES = ("length", "depth")
-NEAR = 1e-9
+LAYOUT_TOLERANCE = 1e-9
 """What differs more from what the layout generates was changed afterwards and does not follow it [m]."""
 ENDS = (("x", "y"), ("x1", "y1"), ("x2", "y2"))
 
@@ -76,4 +76,4 @@ def _is_generated(scenario: Scenario, name: str, value: float) -> bool:
         given = scenario.vehicle.get(rest, 0.0)
     else:
         given = getattr(getattr(scenario, owner), rest, math.inf)
-    return abs(float(given) - value) < NEAR
+    return abs(float(given) - value) < LAYOUT_TOLERANCE

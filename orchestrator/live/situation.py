@@ -48,7 +48,7 @@ def situation(scenario: Scenario) -> dict[str, Any]:
     ending = scenario.stop_condition
     return {
         **{key: getattr(scenario, key) for key in ("name", "title", "description", "task", "seed")},
-        "source": scenario.file and _shipped_name(scenario),
+        "source": scenario.file and _name_of_shipped(scenario),
         "overrides": scenario.overrides,
         "times": [
             scenario.step_ns,
@@ -83,14 +83,14 @@ def _faults(scenario: Scenario) -> dict[str, Any]:
     """Return what disturbs the run: in words, which inputs of which model, and the numbers of each receiver."""
     numbers = numbers_for(scenario, np.array([scenario.seed]))[0].tolist()
     return {
-        "said": [_said(fault) for fault in scenario.faults],
+        "said": [_fault_text(fault) for fault in scenario.faults],
         "when": [[fault.start, fault.stop] for fault in scenario.faults],
         "heard": [[FAULTS.index(kind), model, *places] for kind, model, places in (x.inputs for x in heard(scenario))],
         "numbers": numbers,
     }
 
 
-def _said(fault: Fault) -> str:
+def _fault_text(fault: Fault) -> str:
     until = f" to {fault.stop:g} s" if math.isfinite(fault.stop) else " s on"
     return f"{fault.kind} {fault.signal}, {fault.start:g}{until}"
 
@@ -106,7 +106,7 @@ def numbers_data() -> dict[str, dict[str, Any]]:
     }
 
 
-def _shipped_name(scenario: Scenario) -> str:
+def _name_of_shipped(scenario: Scenario) -> str:
     """Return what a scenario that is written from the page has as its base."""
     return scenario.name if scenario.file.endswith(f"scenarios/{scenario.name}.yaml") else scenario.file
 

@@ -92,10 +92,11 @@ def adaptive_sample(
     watched = inputs.steering_wheel_angle if state.phase == AdaptivePhase.STANDBY else state.request
     expected = motion_expectation(state.phase)
     monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
+    counted = time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill, expected.begun)
     seen = state._replace(
         frame=frame,
         monitor=monitor,
-        running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
+        running_ns=state.running_ns + counted,
         takeover=inputs.driver_takeover,
         driver=_driver(state, inputs, params, dt_ns),
     )

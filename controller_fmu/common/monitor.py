@@ -73,12 +73,13 @@ def watch(
     )
 
 
-def time_counted(dt_ns: int, speed: float, standstill: float) -> int:
+def time_counted(dt_ns: int, speed: float, standstill: float, begun: bool = True) -> int:
     """Return what of a sample counts against the longest duration [ns]: a car that creeps is counted by its way.
 
-    So a slow driver, whose car always gets on, has as far to go as one at ``PACE``.
+    So a slow driver, whose car always gets on, has as far to go as one at ``PACE``. In standby (``begun`` false) no
+    way leads to the slot: a car that creeps instead of standing is waited for no longer than one that stands.
     """
-    if standstill < abs(speed) < PACE:
+    if begun and standstill < abs(speed) < PACE:
         return math.floor(dt_ns * abs(speed) / PACE)
     return dt_ns
 

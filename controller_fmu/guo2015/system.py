@@ -147,6 +147,8 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
     tracking = track(tracked, now.pose, now.planned.path, piece, params)
     request = _wheel_request(phase, tracking, now.planned, params)
     swing = _swing(state, phase, request, now, params)
+    begun = state.phase != GuoPhase.STANDBY
+    counted = time_counted(now.dt_ns, now.inputs.measured_speed, params.threshold.standstill, begun)
     return GuoState(
         phase=phase,
         leg=leg,
@@ -154,7 +156,7 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
         reason=Reason.NONE,
         manoeuvres=state.manoeuvres + 1 if turned else state.manoeuvres,
         direction=direction if direction != 0 else state.direction,
-        running_ns=state.running_ns + time_counted(now.dt_ns, now.inputs.measured_speed, params.threshold.standstill),
+        running_ns=state.running_ns + counted,
         piece=tracking.piece,
         plan=now.planned,
         tracking=tracking,

@@ -44,7 +44,7 @@ def test_a_block_of_the_controller_has_the_ports_it_needs() -> None:
     outputs = [item.name for item in fmi_variables(CONTROLLER) if item.causality == "output"]
     assert outputs == PORTS
     inputs = {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"}
-    assert {name for name in inputs if not name.startswith("person.")} < set(outputs)
+    assert {name for name in inputs if not name.startswith("manual.")} < set(outputs)
     wanted = {item.name for item in fmi_variables(CONTROLLER) if item.causality == "input"}
     told = {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
     assert {name for name in wanted if not name.startswith(FROM_OUTSIDE)} < told

@@ -193,7 +193,7 @@ def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(
 def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made = []
 
-    def translate(model: Any) -> Any:
+    def translate(model: Any, live: Any) -> Any:
         made.append(model.name)
         return Translation(model.name, f"header {len(made)}", "source")
 

@@ -120,7 +120,7 @@ def test_names_that_no_other_tool_can_spell(tmp_path: Path) -> None:
 def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk: Path, tmp_path: Path) -> None:
     text = (desk / "two_arcs.yaml").read_text()
     mode = "{from: controller.State, states: {idle: 1, first: 2, second: 3, there: 4}}"
-    text = re.sub(r"mode: .*", f"mode: {mode}", text) + "ending: {succeeded: [there]}\n"
+    text = re.sub(r"mode: .*", f"mode: {mode}", text) + "stop_condition: {succeeded: [there]}\n"
     limit = "{id: slow, signal: vehicle.speed, max_abs: 1, window: {phase: TO_Q1}, source: us, required: false}"
     path = desk / "own_states.yaml"
     path.write_text(f"{text}requirements: [{limit}]\n")

@@ -99,7 +99,7 @@ def test_a_scenario_and_a_study_run_without_warnings(
     short = ["--fmus", "none", "--no-page", "--set", "stop_time=0.5"]
     assert main(["run", "my-slot.yaml", *short]) == 1
     for study in ("studies/my-study.yaml", "case4.yaml"):
-        assert main(["sweep", study, "--every", "12", *short]) == 0
+        assert main(["sweep", study, "--stride", "12", *short]) == 0
     assert "warning" not in capsys.readouterr().err
     assert main(["new", "scenario", "my-slot.yaml"]) == 2
     assert "my-slot.yaml: is there already" in capsys.readouterr().err

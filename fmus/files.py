@@ -53,7 +53,10 @@ def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
         if sync:
             synced(path.parent)
     except OSError as error:
-        raise _named(error, path) from error
+        named = _named(error, path)
+        if named is error:
+            raise  # not from itself: who follows the causes would never end
+        raise named from error
 
 
 def write_whole(path: Path, content: bytes | str, *, sync: bool = False) -> None:

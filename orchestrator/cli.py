@@ -74,7 +74,9 @@ def _address_space() -> int:
 
 def _is_scarce(error: BaseException | None) -> bool:
     """Return whether an error, or one that led to it, is for want of memory, files or threads."""
-    while error is not None:
+    seen: set[int] = set()  # an error raised again while its own consequence is handled leads to itself
+    while error is not None and id(error) not in seen:
+        seen.add(id(error))
         wants = isinstance(error, OSError) and error.errno in SCARCE
         if isinstance(error, MemoryError) or wants or any(text in str(error) for text in SCARCE_TEXTS):
             return True

@@ -74,7 +74,7 @@ def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
 
 
 def test_a_run_ends_at_its_stop_time_also_between_two_steps(run_of_page: Any) -> None:
-    scenario = load_scenario("guo2015-case4", ["stop_time=0.5237", "every.controller=3"])
+    scenario = load_scenario("guo2015-case4", ["stop_time=0.5237", "decimation.controller=3"])
     recording = run_scenario(scenario, fmu_files("native"), kind="native").recording
     names, _, lines = run_of_page(scenario)
     assert (lines[:, 0] == recording.t).all()

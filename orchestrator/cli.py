@@ -80,7 +80,7 @@ def _is_scarce(error: BaseException | None) -> bool:
         wants = isinstance(error, OSError) and error.errno in SCARCE
         if isinstance(error, MemoryError) or wants or any(text in str(error) for text in SCARCE_TEXTS):
             return True
-        error = error.__cause__ or error.__context__
+        error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
     return False
 
 

@@ -308,7 +308,7 @@ def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytes
     sets = ["--set", "controller.guo2015.k4=3", "--set", "title=A <b>title</b>"]
     arguments = ["guo2015-case4", "--fmus", "none", *sets, "--out"]
     assert main(["run", *arguments, str(tmp_path / "run")]) == 0
-    assert "changed: controller.guo2015.k4 = 3\n" in capsys.readouterr().out
+    assert "overrides: controller.guo2015.k4 = 3\n" in capsys.readouterr().out
     summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
     assert summary["overrides"] == {"controller.guo2015.k4": "3", "title": "A <b>title</b>"}
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")

@@ -85,7 +85,7 @@ def test_a_file_that_is_no_case_is_refused(text: str, tmp_path: Path) -> None:
 def test_more_corners_than_the_map_holds_are_refused(tmp_path: Path) -> None:
     (tmp_path / "Case0.csv").write_text(CASE)
     content = read_tpcap(tmp_path / "Case0.csv")
-    content["polygons"] = [[[0.01 * n, 9.0], [0.01 * n, 9.1], [0.01 * n + 0.005, 9.0]] for n in range(121)]
+    content["obstacles"] = [[[0.01 * n, 9.0], [0.01 * n, 9.1], [0.01 * n + 0.005, 9.0]] for n in range(121)]
     (tmp_path / "many.yaml").write_text(yaml.safe_dump(content))
     with pytest.raises(BadInput, match="the map holds 360"):
         load_scenario(str(tmp_path / "many.yaml"))

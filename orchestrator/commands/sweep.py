@@ -203,10 +203,11 @@ def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
 def _write_live_page(path: Path) -> str:
     """Write the page that replays runs beside the table; return its name, empty where it cannot be made."""
     from fmus.native.web import can_build
-    from orchestrator.sweep.page.explorer import SUFFIX, live_scenario
+    from orchestrator.sweep.page.explorer import live_scenario
+    from orchestrator.sweep.store import LIVE_SUFFIX
     from orchestrator.sweep.table import Table
 
-    page = path.with_name(f"{path.stem}{SUFFIX}")
+    page = path.with_name(f"{path.stem}{LIVE_SUFFIX}")
     scenario = live_scenario(Table(path)) if can_build() else None
     if scenario is None:
         page.unlink(missing_ok=True)

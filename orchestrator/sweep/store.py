@@ -175,8 +175,9 @@ def _put_sum(table: Path) -> None:
 
 
 def forget_made_of(table: Path) -> None:
-    """Remove the page of an older table, and call its repeated rows ``row-N.older``."""
+    """Remove the pages of an older table, and call its repeated rows ``row-N.older``."""
     table.with_suffix(".html").unlink(missing_ok=True)
+    table.with_name(f"{table.stem}{LIVE_SUFFIX}").unlink(missing_ok=True)
     for row in table.parent.glob("row-*"):
         if row.suffix != ".older" and (row / "scenario.yaml").is_file():
             older = row.with_name(f"{row.name}.older")

@@ -151,7 +151,7 @@ def test_a_road_is_finished_not_parked() -> None:
     assert why(verdict(road)) == ("finished", "all checks passed")
     assert why(verdict(road, phase=GuoPhase.PATH_TRACKING)) == ("not_finished", "stop time reached in path_tracking")
     assert math.isnan(verdict(road).final.lateral_error)
-    with pytest.raises(BadInput, match="expect: 'parked' is no outcome of task drive, expected finished"):
+    with pytest.raises(BadInput, match="expected_outcome: 'parked' is no outcome of task drive, expected finished"):
         load_scenario("preview", ["expected_outcome=parked"])
 
 

@@ -16,7 +16,6 @@ MAX_ROWS, MAX_ROWS_OF_CELL = 4_000, 60
 MAX_KEYS = 6
 """Parameters that a list of runs shows."""
 TRUTH = ("target", "slot")
-SUFFIX = "-live.html"
 
 
 def explorer_data(table: Table, shown: list[Map], live: str) -> str:

@@ -23,6 +23,8 @@ from orchestrator.text.errors import BadInput
 ABOUT, CHECKSUM = b"apa", "apa.checksum"
 EMPTY_CHECKSUM = b"0" * 64
 CARRIED = re.compile(rb"apa\.checksum.{1,4}?([0-9a-f]{64})", re.DOTALL)
+LIVE_SUFFIX = "-live.html"
+"""End of the name of the page that replays rows of a table."""
 WRITTEN: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string()}
 

@@ -61,7 +61,7 @@ def test_what_differs_is_a_column_and_nothing_else() -> None:
 
 def test_scenarios_that_differ_in_more_than_numbers_are_refused() -> None:
     other = guo(0.5, requirements=[Requirement(id="x", signal="duration", max=1.0, source="test")])
-    with pytest.raises(ValueError, match="not in limits"):
+    with pytest.raises(ValueError, match="not in requirements"):
         design_of([*cases(), LabelledScenario({"who": "x", "number": 4}, other)])
     with pytest.raises(ValueError, match="not in target"):
         design_of([*cases(), LabelledScenario({"who": "x", "number": 4}, guo(0.5, target=None))])

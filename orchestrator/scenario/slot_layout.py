@@ -148,6 +148,10 @@ def layout_of(layers: Iterable[tuple[dict[str, Any], object]]) -> SlotLayout | N
         last = file
     if last is None:
         return None
+    if "kind" not in merged:
+        keys = ", ".join(SlotLayout.model_fields)
+        text = f"the scenario has none, so its slot, neighbours and kerb are given one by one; a new one needs {keys}"
+        raise BadInput(text, file=last, key=KEY)
     try:
         return SlotLayout.model_validate(merged)
     except ValidationError as error:

@@ -110,6 +110,11 @@ def test_a_mistake_is_named(sets: list[str], message: str) -> None:
         load_scenario("apa-parallel", sets)
 
 
+def test_a_part_of_a_layout_that_the_scenario_has_not_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"slot_layout: the scenario has none.*kind, length, depth"):
+        load_scenario("guo2015-case4", ["slot_layout.length=5"])
+
+
 def test_slot_and_layout_in_one_file_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("slot_layout: {kind: parallel, length: 6, depth: 2}\nslot: {x: 0, y: 0, length: 6, width: 2}\n")

@@ -1,9 +1,11 @@
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from orchestrator.sweep.study.read_study import read_study
 from orchestrator.sweep.study.study_file import StudyFile
 from orchestrator.text.errors import BadInput
 
@@ -131,3 +133,10 @@ def test_a_spread_has_exactly_one_distribution() -> None:
     runs: Any = {"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}}
     with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
         StudyFile(name="a", scenario="b", runs=runs)
+
+
+def test_samples_without_their_number_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "study.yaml"
+    file.write_text("name: s\nscenario: guo2015-case4\nruns: {latin_hypercube: {stop_time: {uniform: [8, 9]}}}\n")
+    with pytest.raises(BadInput, match=r"latin_hypercube\.n: is missing"):
+        read_study(str(file), {})

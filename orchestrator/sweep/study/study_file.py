@@ -55,7 +55,8 @@ class Samples(_StudyPart):
     def _beside(cls, data: Any) -> Any:
         if not isinstance(data, dict) or "spreads" in data:
             return data
-        return {"n": data.get("n"), "spreads": {key: value for key, value in data.items() if key != "n"}}
+        number = {"n": data["n"]} if "n" in data else {}
+        return {**number, "spreads": {key: value for key, value in data.items() if key != "n"}}
 
 
 class Runs(_StudyPart):

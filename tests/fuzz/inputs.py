@@ -151,7 +151,7 @@ extends: guo2015-case4
 title: odd
 stop_time: 0.3
 step: 0.01
-every: {controller: 1}
+decimation: {controller: 1}
 seed: 1
 car: guo2015
 vehicle:
@@ -163,7 +163,7 @@ faults:
   - {signal: vehicle.odometry, kind: delay, start: 0.1, stop: 1, delay: 0.1}
   - {signal: vehicle.odometry.x, kind: noise, sigma: 0.1}
   - {signal: vehicle.odometry.heading, kind: dropout, probability: 0.5}
-limits:
+requirements:
   - house
   - {id: a, signal: vehicle.speed, max: 3, window: {from: 0, to: 1, phase: PARKED}, source: me}
 stop_condition: {still: 0.001, standstill: 0.5, succeeded: [PARKED]}

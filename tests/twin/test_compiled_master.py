@@ -54,14 +54,14 @@ def test_an_ending_in_mid_block(fmus: Any, loops: Any) -> None:
 
 
 def test_multi_rate(fmus: Any, loops: Any) -> None:
-    expected, found = both(fmus["native"], "stop_time=12", "every.controller=3")
+    expected, found = both(fmus["native"], "stop_time=12", "decimation.controller=3")
     assert differing(found.recording, expected.recording) == {}
     assert loops
 
 
 @pytest.mark.parametrize("kind", ["native", "python"])
 def test_the_last_step_ends_at_the_stop_time(fmus: Any, loops: Any, kind: str) -> None:
-    expected, found = both(fmus[kind], "stop_time=1.0137", "every.controller=3", "every.vehicle=7")
+    expected, found = both(fmus[kind], "stop_time=1.0137", "decimation.controller=3", "decimation.vehicle=7")
     assert found.end == expected.end == ("stop_time", 1_013_700_000)
     assert differing(found.recording, expected.recording) == {}
     assert loops

@@ -183,7 +183,7 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(
     assert description.license == "MIT"
     assert description.modelName == "Parking_guo2015_case4_105"
     assert description.description == CASE.title
-    assert description.defaultExperiment.stopTime == str(CASE.stop_time)
+    assert description.defaultExperiment.stopTime == str(CASE.longest)
     assert known["vehicle.pose.x"].unit == "m"
     assert known["controller.guo2015.k1"].variability == "tunable"
     assert known["controller.lateral_error"].causality == "local"

@@ -215,7 +215,7 @@ def test_what_a_system_file_cannot_say_is_refused(name: str) -> None:
     with pytest.raises(BadInput, match="faults live in apa's own master"):
         parts_of(load_scenario(name, []))
     with pytest.raises(BadInput, match="one communication step for all"):
-        parts_of(load_scenario("guo2015-case4", ["every.controller=2"]))
+        parts_of(load_scenario("guo2015-case4", ["decimation.controller=2"]))
 
 
 def test_the_reference_is_a_parked_car(ours: Any) -> None:

@@ -63,7 +63,7 @@ def test_a_case_becomes_a_scenario_that_is_judged_by_its_polygons(files: Any, tm
     assert summary.outcome == "parked"
     checks = {check.id: check for check in summary.checks}
     poses = [Pose(*row) for row in rows_of(recording)]
-    least = least_clearance(poses[::2], scenario.polygons, CAR)
+    least = least_clearance(poses[::2], scenario.obstacles, CAR)
     assert checks["no contact with a polygon"].value == pytest.approx(least, abs=2e-3)
     assert least > 0.09
 
@@ -119,4 +119,4 @@ def test_cases_of_tpcap_driven_with_errors_touch_nothing(number: Any, files: Any
     scenario, recording, summary = driven(tmp_path / "case.yaml", files, errors)
     assert summary.outcome == "parked", summary.reason
     poses = [Pose(*row) for row in rows_of(recording)[::3]]
-    assert least_clearance(poses, scenario.polygons, CAR) > 0.02
+    assert least_clearance(poses, scenario.obstacles, CAR) > 0.02

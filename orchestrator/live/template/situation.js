@@ -49,7 +49,7 @@ class Situation {
     const { layout } = this, found = new Map();
     if (!layout || !layout.names.some((name) => name in changes)) return found;
     const key = layout.names.map((name) => changes[name]).join();
-    if (key === this.laidKey) return this.laid;
+    if (this.laid && key === this.laidKey) return this.laid;
     this.laidKey = key;
     this.laid = found;
     const [length, depth, ...origin] = layout.names.map((name, i) => changes[name] ?? layout.start[i]), by = [length - layout.start[0], depth - layout.start[1]];

@@ -104,10 +104,13 @@ function drawPlan(scene, run, plan) {
 // The points the controller has in mind, by name: Q1 to Q4, P1 to P4, LA1 and LA2.
 function drawKeyPoints(scene, run, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
-  const poses = Object.keys(run.signals).map((name) => /^(controller\.(?:.*\.)?([pq]\d|la\d))\.x$/.exec(name)).filter(Boolean);
+  const poses = Object.keys(run.signals).flatMap((name) => {
+    const match = /^(controller\.(?:.*\.)?([pq]\d|la\d))\.x$/.exec(name);
+    return match ? [[match[1], match[2]]] : [];
+  });
   g.fillStyle = color("asked");
   g.font = "11px sans-serif";
-  const seen = poses.map(([, pose, name]) => [name, ...["x", "y", "heading"].map((axis) => run.at(`${pose}.${axis}`, t))]);
+  const seen = poses.map(([pose, name]) => [name, ...["x", "y", "heading"].map((axis) => run.at(`${pose}.${axis}`, t))]);
   const known = new Set(seen.filter(([, ...at]) => at.some(Boolean)).map(([name]) => name[0]));
   for (const [name, x, y] of seen) {
     if (!known.has(name[0]) || !Number.isFinite(x + y)) continue;

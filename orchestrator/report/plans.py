@@ -19,8 +19,8 @@ OPEN_DEPTH = 5.5
 Point = tuple[float, float]
 
 
-def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
-    """Return the plans with the time from which each held, positions less ``origin``; fewer if they change often."""
+def plans_of(recording: Recording, arrays: Arrays, origin: Point, most: int = MOST_PLANS) -> list[dict[str, Any]]:
+    """Return the plans with the time from which each held, positions less ``origin``; at most about ``most``."""
     names = [name for name in recording.signals if PARTS.match(name)]
     planned = is_planned(recording.signals)
     if not (names or len(planned)) or not len(recording.t):
@@ -30,7 +30,7 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[s
     changes = np.flatnonzero(~same.all(axis=1)) + 1
     found = []
     parameters = recording.parameters_of("controller")
-    for row in [0, *_fewer(changes, recording.t)]:
+    for row in [0, *_fewer(changes, recording.t, most)]:
         values = recording.values_at("controller", row)
         plan: dict[str, Any] = {"t": float(recording.t[row])}
         points = sample_path(values, parameters=parameters) - origin
@@ -44,11 +44,11 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[s
     return found
 
 
-def _fewer(changes: Indices, t: Array) -> list[int]:
-    """Return at most ``MOST_PLANS`` of the rows ``changes``: of those close together in time, the last."""
-    if len(changes) <= MOST_PLANS:
+def _fewer(changes: Indices, t: Array, most: int) -> list[int]:
+    """Return at most ``most`` of the rows ``changes``: of those close together in time, the last."""
+    if len(changes) <= most:
         return [int(row) for row in changes]
-    bins = ((t[changes] - t[0]) / (t[-1] - t[0]) * (MOST_PLANS - 1)).astype(int)
+    bins = ((t[changes] - t[0]) / (t[-1] - t[0]) * (most - 1)).astype(int)
     is_last = np.append(bins[1:] != bins[:-1], True)
     return [int(row) for row in changes[is_last]]
 

@@ -21,7 +21,7 @@ from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Final, Summary
 
-MOST_ROWS = (2400, 1200, 600)
+MOST_ROWS = (2400, 1200, 600, 300)
 LARGEST_PAGE = 1_000_000
 KEYS = (
     "Keys: space plays, arrows step 0.1 s (shift: 1 s), Home, End, < and > change speed, + and - zoom the top view, "

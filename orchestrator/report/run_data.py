@@ -10,7 +10,7 @@ from orchestrator.drawing.decimation import MAX_STEP_ROWS, deviation
 from orchestrator.drawing.panels import MODES, REFERENCES
 from orchestrator.log.line import Line
 from orchestrator.report.payload import Arrays
-from orchestrator.report.plans import plans_of
+from orchestrator.report.plans import MOST_PLANS, plans_of
 from orchestrator.report.still import Point, origin_of, still_of
 from orchestrator.report.thinning import thin
 from orchestrator.scenario.models import models_for
@@ -19,6 +19,9 @@ CHART = "controller.phase"
 MOST_RIBBONS = 7
 ASKED = frozenset(name.partition(".")[2] for name in REFERENCES)
 """Names, without their slave, of what is asked for: an output and the input it feeds are one curve."""
+
+ROWS_PER_PLAN = 40
+"""A page of fewer rows has fewer plans, too: one for so many rows."""
 
 
 def run_data(
@@ -50,7 +53,7 @@ def run_data(
         "time": arrays.add(t[thinned.rows]),
         "rows": [len(thinned.rows), len(t) if whole is None else whole.count, off],
         "signals": {name: _signal(recording, name, thinned.rows, arrays) for name in recording.signals},
-        "plans": plans_of(recording, arrays, origin),
+        "plans": plans_of(recording, arrays, origin, min(MOST_PLANS, max(2, most // ROWS_PER_PLAN))),
         "scene": still_of(recording, origin),
         "chart": CHART if CHART in recording.signals else None,
         "log": [line._asdict() for line in words],

@@ -1,7 +1,6 @@
 """From a model to the text of its header and its C file, or to all that stands in the way."""
 
 import typing
-from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
 
@@ -9,12 +8,13 @@ from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
-from fmus.compiler.slicing import Slice, SliceResult, slice_program
-from fmus.compiler.source.kinds import Array, Kind, NoKindError, Struct, fields_of, is_named_tuple, translating
+from fmus.compiler.slicing import Slice, SliceResult, fields_along, slice_program
+from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple, translating
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
 from fmus.compiler.target.program import Program
 from modelkit.model import Model
+from modelkit.variables import variables
 
 LANGUAGE = (arithmetic, calls, conditions, loops, statements, tuples)
 """The files that know what to make of each part of the language."""
@@ -38,7 +38,8 @@ def live_inputs(model: Model, live: Slice) -> frozenset[str]:
     """Return the names of the inputs that the slice ``live`` of ``model`` reads; ``Refused`` as :func:`translate`."""
     with _types_of(model):
         fields = _slice(model, _interface(model), live).live_fields
-        return frozenset(name for name, path in paths_of(model.inputs) if set(path) <= fields)
+        names = (item.name for item in variables(model.inputs))
+        return frozenset(name for name in names if fields.issuperset(fields_along(model.inputs, name)))
 
 
 def _types_of(model: Model) -> AbstractContextManager[None]:
@@ -90,24 +91,6 @@ def chosen(model: Model, choices: frozenset[int] | None) -> Model:
         return model
     kept = tuple(item for item in model.systems.systems if choices & set(item.values))
     return model._replace(systems=model.systems._replace(systems=kept))
-
-
-def paths_of(cls: Any) -> Iterator[tuple[str, tuple[tuple[Any, str], ...]]]:
-    """Yield the name of each variable of a NamedTuple and the (class, field) that lead to it."""
-    for field, kind in fields_of(cls).items():
-        found = list(_paths_in(field, kind))
-        yield from ((name, ((cls, field), *path)) for name, path in found)
-
-
-def _paths_in(name: str, kind: Kind) -> Iterator[tuple[str, tuple[tuple[Any, str], ...]]]:
-    if isinstance(kind, Struct):
-        for inner, path in paths_of(kind.cls):
-            yield f"{name}.{inner}", path
-    elif isinstance(kind, Array):
-        for place in range(kind.length):
-            yield from _paths_in(f"{name}[{place + 1}]", kind.item)
-    else:
-        yield name, ()
 
 
 def _roots(model: Model) -> list[Any]:

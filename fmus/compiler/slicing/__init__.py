@@ -7,6 +7,7 @@ live output. State that only dead outputs read is dead with all that computes it
 zeros, so that types and the layout of the state stay as they are.
 """
 
+from fmus.compiler.slicing.code_kinds import fields_along
 from fmus.compiler.slicing.slices import DeadValue, Slice, SliceResult, slice_program
 
-__all__ = ["DeadValue", "Slice", "SliceResult", "slice_program"]
+__all__ = ["DeadValue", "Slice", "SliceResult", "fields_along", "slice_program"]

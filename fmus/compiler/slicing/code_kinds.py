@@ -1,7 +1,6 @@
 """What is known of functions whatever is live: the kinds of their parameters, results, variables and expressions."""
 
 import ast
-import sys
 import typing
 from collections.abc import Iterable, Iterator
 from types import FunctionType
@@ -26,7 +25,7 @@ from fmus.compiler.source.kinds import (
     whole_of,
 )
 from fmus.compiler.source.reading import Library
-from fmus.compiler.source.resolve import Static, static
+from fmus.compiler.source.resolve import Static, owner_of, static
 
 Scope: TypeAlias = dict[str, Kind | None]
 """Kinds of the variables that generators around an expression bind."""
@@ -52,9 +51,15 @@ class FunctionFacts:
                 kinds.note_kinds(self, item)
 
 
-def owner_of(function: FunctionType) -> Any:
-    """Return the class that has the method ``function``."""
-    return getattr(sys.modules[function.__module__], function.__qualname__.split(".")[0])
+def fields_along(cls: Any, name: str) -> Iterator[tuple[Any, str]]:
+    """Yield the (class, field) that lead from a NamedTuple to its variable ``name``: ``pose.x``, ``ultrasonic[3]``."""
+    for word in name.split("."):
+        field = word.partition("[")[0]
+        yield cls, field
+        kind = fields_of(cls)[field]
+        while isinstance(kind, Array):
+            kind = kind.item
+        cls = kind.cls if isinstance(kind, Struct) else None
 
 
 def _kind_or_none(hint: Any) -> Kind | None:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.slicing.code_kinds import CodeKinds, Scope, has_open
+from fmus.compiler.slicing.code_kinds import CodeKinds, Scope, fields_along, has_open
 from fmus.compiler.source.bindings import Bindings, bindings
 from fmus.compiler.source.discovery import Discovery
-from fmus.compiler.source.kinds import Array, Kind, Mixed, Scalar, Struct, fields_of, is_named_tuple, parts, whole_of
+from fmus.compiler.source.kinds import Kind, Mixed, Scalar, Struct, fields_of, is_named_tuple, parts, whole_of
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.writers import Writers
 
@@ -41,15 +41,8 @@ class Solver(CodeKinds):
 
     def need_output(self, cls: Any, name: str) -> None:
         """Note that an output is used."""
-        for word in name.split("."):
-            field = word.partition("[")[0]
-            self.need_field(cls, field)
-            kind: Kind | None = fields_of(cls)[field]
-            while isinstance(kind, Array):
-                kind = kind.item
-            cls = kind.cls if isinstance(kind, Struct) else None
-        if cls is not None:
-            self.need_whole(Struct(cls))
+        for owner, field in fields_along(cls, name):
+            self.need_field(owner, field)
 
     def need_field(self, cls: Any, field: str) -> None:
         """Note that a field is read."""
@@ -58,19 +51,17 @@ class Solver(CodeKinds):
             self.changed = True
 
     def need_whole(self, kind: Kind | None) -> None:
-        """Note that all of a value is read, without the names of its fields."""
+        """Note that all of a value is read, without the names of its fields; None: a value of unknown kind."""
         if kind is None:
             for cls in self.found.classes:
                 for field in cls._fields:
                     self.need_field(whole_of(cls), field)
-        elif isinstance(kind, Struct):
-            fresh = [(name, part) for name, part in fields_of(kind.cls).items() if (kind.cls, name) not in self.fields]
-            for name, part in fresh:
-                self.need_field(kind.cls, name)
-                self.need_whole(part)
-        elif not isinstance(kind, Scalar):
-            for part in parts(kind):
-                self.need_whole(part)
+            return
+        if isinstance(kind, Struct):
+            for field in fields_of(kind.cls):
+                self.need_field(kind.cls, field)
+        for part in parts(kind):  # also of a field that is live already: it may be read in part only
+            self.need_whole(part)
 
     def need_variable(self, function: FunctionType, name: str) -> None:
         """Note that a variable of a function is read."""

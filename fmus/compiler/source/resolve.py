@@ -64,3 +64,8 @@ def _through_alias(found: Static, library: Library) -> Static:
         if member is not None and isinstance(member.value, IntEnum) and int(member.value) == found.value:
             return member
     return found
+
+
+def owner_of(function: FunctionType) -> Any:
+    """Return the class that has the method ``function``."""
+    return getattr(sys.modules[function.__module__], function.__qualname__.split(".")[0])

@@ -1,13 +1,13 @@
 """What functions take and give, by their annotations."""
 
 import ast
-import sys
 import typing
 from types import FunctionType
 from typing import Any, NamedTuple
 
 from fmus.compiler.source.kinds import NOTHING, Kind, NoKindError, Struct, kind_of
 from fmus.compiler.source.refusals import AlreadySaidError
+from fmus.compiler.source.resolve import owner_of
 from fmus.compiler.target.program import Program
 
 
@@ -50,7 +50,7 @@ def _read_signature(program: Program, function: FunctionType) -> Signature | Non
     kinds: dict[str, Kind] = {}
     for item in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
         if item.arg not in hints and item.arg == "self" and "." in function.__qualname__:
-            kinds["self"] = Struct(_owner(function))
+            kinds["self"] = Struct(owner_of(function))
         elif item.arg not in hints:
             refuse(item, f"{node.name}() takes {item.arg} without a type", f"write {item.arg}: float, or what it is")
         else:
@@ -89,10 +89,6 @@ def _defaults(
                 what = f"{node.name}() takes {name}, by default {error.what}"
                 program.refuse(function.__module__, node, what, error.advice)
     return found
-
-
-def _owner(function: FunctionType) -> Any:
-    return getattr(sys.modules[function.__module__], function.__qualname__.split(".")[0])
 
 
 def _is_property(node: ast.FunctionDef) -> bool:

@@ -321,17 +321,17 @@ def paths_of(runs: list[Driven]) -> Figure:
 
 
 def apa_curvature(runs: list[Driven]) -> Figure:
-    """Return Fig. 4's point, continuous curvature: front-wheel angle over the way, ramps instead of jumps."""
+    """Return Fig. 4, continuous curvature: front-wheel angle over travelled distance, with ramps instead of jumps."""
     figure, (axis,) = grid_of(1, 1, 5.0, 2.6)
     signals = runs[0].recording.signals
-    way = np.concatenate(
-        [[0.0], np.cumsum(np.hypot(np.diff(signals["vehicle.pose.x"]), np.diff(signals["vehicle.pose.y"])))]
-    )
     parking = np.isin(signals["controller.apa.mode"], [Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING])
     axis.plot(
-        way[parking], np.degrees(signals["vehicle.front_wheel_angle"][parking]), color="#000000", label="front wheel"
+        signals["vehicle.distance"][parking],
+        np.degrees(signals["vehicle.front_wheel_angle"][parking]),
+        color="#000000",
+        label="front wheel",
     )
-    axis.set(xlabel="way [m]", ylabel="front-wheel angle [deg]")
+    axis.set(xlabel="travelled distance [m]", ylabel="front-wheel angle [deg]")
     return figure
 
 

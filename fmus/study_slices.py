@@ -32,12 +32,13 @@ def study_slices(
     the cache for the project's own models. Raises ``Refused`` for a model that the translator refuses.
     """
     used = frozenset(signals)
-    packages = [path for model in models.values() for path in own_packages(model) or ()]
-    if not all(own_packages(model) for model in models.values()):
+    packages = [own_packages(model) for model in models.values()]
+    if None in packages:
         return _solve(models, used, choices)
     words = [word for name, model in models.items() for word in (name, *words_of(model))]
     words += [*sorted(used), *(f"{name} {sorted(values)}" for name, values in sorted(choices.items()))]
-    key = hash_of([*dict.fromkeys(packages), ROOT / "modelkit", ROOT / "fmus"], "\0".join(words))
+    folders = dict.fromkeys(path for paths in packages for path in paths or ())
+    key = hash_of([*folders, ROOT / "modelkit", ROOT / "fmus"], "\0".join(words))
 
     def made() -> bytes:
         found = _solve(models, used, choices)

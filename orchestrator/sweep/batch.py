@@ -8,7 +8,6 @@ import threading
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -76,22 +75,17 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
 
     ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
     """
-    ending, models = scenario.stop_condition, tuple(scenario.models.items())
     faults = tuple(item.inputs for item in heard(scenario))
     with _compiling:
-        return _compile_rows(
-            models, measures, faults, choices, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns
-        )
+        return _compile_rows(tuple(scenario.models.items()), measures, faults, choices, _ending(scenario))
 
 
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    models, end = dict(scenario.models), scenario.stop_condition
-    ending = Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
-    used = used_signals(ending, [_recorded_signal(item) for item in job.measures])
-    slices = study_slices(models, used, dict(choices_of(scenario, arrays(job, chunk)[0])))
-    return explanation(models, slices)
+    models, kept = dict(scenario.models), [_recorded_signal(item) for item in job.measures]
+    choices = choices_of(scenario, arrays(job, chunk)[0])
+    return explanation(models, study_slices(models, used_signals(_ending(scenario), kept), dict(choices)))
 
 
 @lru_cache
@@ -100,15 +94,20 @@ def _compile_rows(
     measures: tuple[Measure, ...],
     faults: tuple[Disturbed, ...],
     choices: Choices | None,
-    *ending: Any,
+    ending: Ending,
 ) -> Rows:
     whole, kept = dict(models), [_recorded_signal(item) for item in measures]
-    complete = compiled_rows(whole, Ending(*ending), kept, faults)
+    complete = compiled_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
-    slices = study_slices(whole, used_signals(Ending(*ending), kept), dict(choices))
+    slices = study_slices(whole, used_signals(ending, kept), dict(choices))
     code = StudyCode(slices, find_compiler().options_for_this_machine())
-    return StudyRows(complete, compiled_rows(whole, Ending(*ending), kept, faults, code))
+    return StudyRows(complete, compiled_rows(whole, ending, kept, faults, code))
+
+
+def _ending(scenario: Scenario) -> Ending:
+    end = scenario.stop_condition
+    return Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
 
 
 def _recorded_signal(measure: Measure) -> Kept:

@@ -46,8 +46,8 @@ def parking_step(
     memory = state.memory
     for _ in range(samples):
         memory = parking_sample(work, memory, inputs, params, period_ns)
-    after = ParkingModelState(end_ns, state.next_sample_ns + samples * period_ns, memory)
-    return after, parking_outputs(memory, params)
+    state = ParkingModelState(end_ns, state.next_sample_ns + samples * period_ns, memory)
+    return state, parking_outputs(state.memory, params)
 
 
 def is_usable(params: ParkingParams) -> bool:

@@ -5,7 +5,6 @@ import math
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import (
     BUMPER_SENSORS,
@@ -51,28 +50,38 @@ SAME_GAP = 0.5
 """Two gaps whose corners lie nearer than this [m] are one: sides end within 0.3 m, odometry drifts by less."""
 
 
-def perceive(
-    perception: Perception,
-    is_driving: bool,
-    obstacles: ObstacleMap,
-    inputs: ParkingSystemInput,
-    params: ParkingParams,
-    dt_ns: int,
-) -> Perception:
-    """Return perception ``dt_ns`` later; while driving each echo is compared with the planned obstacles."""
-    sensors = params.car.ultrasonic
-    time = perception.time + dt_ns
-    cycle = next_cycle(perception.cycle, inputs.ultrasonic, time, dt_ns, sensors.cycle)
-    perception = perception._replace(cycle=cycle, time=time)
+def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
+    """Return the memory with perception ``dt_ns`` later; while driving, echoes are compared with planned obstacles."""
+    time = memory.perception.time + dt_ns
+    cycle = next_cycle(memory.perception.cycle, inputs.ultrasonic, time, dt_ns, params.car.ultrasonic.cycle)
+    memory = memory._replace(perception=memory.perception._replace(cycle=cycle, time=time))
     if not cycle.is_new:
-        return perception
-    local_map = update_map(perception.local_map, cycle.readings, inputs.odometry, sensors, params.mapping)
-    if is_driving:
-        tracks = tuple(_track(perception, number, obstacles, inputs, params) for number in range(SENSORS))
-        echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
-        local_map = local_map._replace(landmarks=_with_facing(local_map.landmarks, tracks, inputs, params))
-        perception = perception._replace(tracks=tracks, echoes=echoes)
-    return perception._replace(local_map=local_map, pose=inputs.odometry)
+        return memory
+    if is_driving_state(memory.state):
+        tracks = tuple(_track(memory, number, inputs, params) for number in range(SENSORS))
+        memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
+        return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
+    return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
+
+
+def _with_measurements(perception: Perception, inputs: ParkingSystemInput, params: ParkingParams) -> Perception:
+    """Return perception with the map after a measurement cycle."""
+    readings = perception.cycle.readings
+    sensors = params.car.ultrasonic
+    perception = perception._replace(
+        local_map=update_map(perception.local_map, readings, inputs.odometry, sensors, params.mapping)
+    )
+    return perception._replace(pose=inputs.odometry)
+
+
+def _with_tracks(
+    perception: Perception, tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
+) -> Perception:
+    """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
+    echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
+    landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
+    perception = perception._replace(local_map=perception.local_map._replace(landmarks=landmarks))
+    return perception._replace(tracks=tracks, echoes=echoes)
 
 
 def _with_facing(
@@ -104,10 +113,9 @@ def is_at_rest(track: ObjectTrack) -> bool:
     return track.status == TrackStatus.CONFIRMED and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
 
 
-def _track(
-    perception: Perception, number: int, obstacles: ObstacleMap, inputs: ParkingSystemInput, params: ParkingParams
-) -> ObjectTrack:
+def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> ObjectTrack:
     """Return the track of one sensor after its reading."""
+    perception = memory.perception
     sensors = params.car.ultrasonic
     reading = perception.cycle.readings[number]
     status = reading_status(reading, sensors)
@@ -123,7 +131,7 @@ def _track(
     track = update_track(before_track, is_echo, measured, approach, variance, sensors.cycle)
     if not is_echo:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
-    planned = range_in_map(sensor, obstacles, sensors.max_range)
+    planned = range_in_map(sensor, memory.plan.obstacles, sensors.max_range)
     expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
     unexplained = measured < expected.distance - params.monitor.unexplained
     distance = max(expected.distance, sensors.min_range)

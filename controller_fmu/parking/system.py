@@ -55,8 +55,7 @@ def parking_sample(
     state = memory.state
     perceives = state not in (ParkingState.STANDBY, ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
     if perceives and input_fault(inputs) == Reason.NONE:
-        perception = perceive(memory.perception, is_driving_state(state), memory.plan.obstacles, inputs, params, dt_ns)
-        memory = memory._replace(perception=perception)
+        memory = perceive(memory, inputs, params, dt_ns)
     if state == ParkingState.SEARCHING:
         memory = search_slots(memory, inputs, params, dt_ns)
         memory = memory._replace(reason=_search_fault(memory, inputs, params))
@@ -147,7 +146,8 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     blocked_long = memory.clocks.blocked * 1e-9 > patience
     moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
     planned = memory.plan.is_found
-    in_place = is_in_place(memory, inputs, params)
+    straightens = memory.state == ParkingState.STRAIGHTENING
+    in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     off = not inputs.apa_switch
     return (
         bit(Condition.SWITCHED_ON, inputs.apa_switch)
@@ -165,8 +165,8 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
         | bit(Condition.AT_END, standing and is_at_end(progress))
         | bit(Condition.STANDING, standing and not blocked)
-        | bit(Condition.IN_PLACE, straight and standing and in_place)
-        | bit(Condition.MISSED, straight and standing and not in_place)
+        | bit(Condition.IN_PLACE, in_place)
+        | bit(Condition.MISSED, straightens and straight and standing and not in_place)
     )
 
 
@@ -203,7 +203,8 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         memory = memory._replace(progress=next_segment(memory.progress, context))
     if state == ParkingState.DRIVING and before != ParkingState.DRIVING:
         memory = memory._replace(progress=set_out(memory.progress))
-    return _request(memory._replace(state=state), context, params)
+    memory = memory._replace(state=state)
+    return _request(memory, context, params)
 
 
 def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:

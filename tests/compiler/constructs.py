@@ -819,6 +819,26 @@ def _the_other_way(big: Big) -> tuple[tuple[float, float, float, float, float], 
     return big.row, big._replace(row=big.row[::-1], default=big.row[0])  # type: ignore[return-value]
 
 
+def items_of_fields(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
+    big = _with_points(Big(Point(x, y), points=(Point(y, x), Point(x, x))), p)
+    at = min(max(n, 0), 4)
+    kept = big
+    big = big._replace(row=big.row[:at] + (x + big.row[0],) + big.row[at + 1 :], default=big.row[at])
+    row = big.row[:at] + (kept.row[at] + y,) + big.row[at + 1 :]
+    big = big._replace(row=row, counts=kept.counts) if q else kept._replace(at=big.points[1])
+    other = kept._replace(row=big.row[:at] + (y,) + big.row[at + 1 :])
+    return _with_points(big._replace(default=other.row[0] + other.row[at]), q)
+
+
+def _with_points(big: Big, swap: bool) -> Big:
+    for index in range(2):
+        at = 1 - index if swap else index
+        nearest = min(max(at, 0), 1)
+        point = Point(big.points[0].y, big.points[nearest].x)
+        big = big._replace(points=big.points[:nearest] + (point,) + big.points[nearest + 1 :], at=big.points[index])
+    return big
+
+
 def pointed_at(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
     return _pointing(_pointing(Big(Point(x, y), points=(Point(y, x), Point(x, x))), p), q)
 

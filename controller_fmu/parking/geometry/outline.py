@@ -48,14 +48,31 @@ def max_point_speed_ratio(outline: VehicleOutline, curvature: float) -> float:
     return math.sqrt(across * across + along * along)
 
 
+class OutlineFrame(NamedTuple):
+    """A pose of the rear axle with the cosine and sine of its heading."""
+
+    x: float = 0.0
+    y: float = 0.0
+    cos: float = 1.0
+    sin: float = 0.0
+
+
+def outline_frame(pose: Pose) -> OutlineFrame:
+    """Return ``pose`` with the cosine and sine of its heading."""
+    return OutlineFrame(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
+
+
 def outline_distance(x: float, y: float, pose: Pose, outline: VehicleOutline) -> float:
     """Return the distance [m] from the point (x, y) to the outline of a vehicle at ``pose``; 0 inside."""
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    dx = x - pose.x
-    dy = y - pose.y
-    along = abs(dx * cos + dy * sin - outline.centre_ahead) - outline.half_length
-    across = abs(dy * cos - dx * sin) - outline.half_width
+    return distance_in_frame(x, y, outline_frame(pose), outline)
+
+
+def distance_in_frame(x: float, y: float, frame: OutlineFrame, outline: VehicleOutline) -> float:
+    """Return the distance [m] from the point (x, y) to the outline of a vehicle at ``frame``; 0 inside."""
+    dx = x - frame.x
+    dy = y - frame.y
+    along = abs(dx * frame.cos + dy * frame.sin - outline.centre_ahead) - outline.half_length
+    across = abs(dy * frame.cos - dx * frame.sin) - outline.half_width
     along = max(0.0, along)
     across = max(0.0, across)
     return math.sqrt(along * along + across * across)

@@ -128,6 +128,20 @@ def predict_range(sensor: SensorPose, landmark: Landmark) -> PredictedRange:
     return predicted_range_to_segment(sensor, start_point(landmark), end_point(landmark))
 
 
+def is_in_reach(landmark: Landmark, sensor: SensorPose, reach: float) -> bool:
+    """Return whether any point of a landmark, open ends extended, may lie before a sensor and within ``reach`` [m].
+
+    A bound by the distance of its reference point, without the directions of cone and segment.
+    """
+    if landmark.type == LandmarkType.NONE:
+        return False
+    extent = max(landmark.end, -landmark.start) + OPEN_EXTENSION
+    dx = landmark.x - sensor.x
+    dy = landmark.y - sensor.y
+    farthest = reach + extent
+    return dx * sensor.axis_x + dy * sensor.axis_y > -extent and dx * dx + dy * dy < farthest * farthest
+
+
 def with_open_ends_extended(landmark: Landmark) -> Landmark:
     """Return a landmark as it may be: beyond an open end a side goes on, so that its echoes are expected there."""
     if landmark.type != LandmarkType.SEGMENT:

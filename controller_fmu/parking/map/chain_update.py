@@ -5,6 +5,7 @@ by side; the fit of two segments must then explain the echoes better than that o
 """
 
 import math
+from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import (
@@ -77,41 +78,62 @@ class SideReading(NamedTuple):
 
 
 class ChainUpdate(NamedTuple):
-    """Landmarks and the chain after a reading."""
+    """Landmarks and the chain after a fit."""
 
     landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
     chain: EchoChain = EchoChain()
 
 
-def use_side_reading(
-    landmarks: tuple[Landmark, ...], chain: EchoChain, reading: SideReading, params: MappingParams
-) -> ChainUpdate:
-    """Return landmarks and chain after a reading."""
-    sensor = reading.sensor
-    status = reading.status
-    measured = reading.range
-    if status == ReadingStatus.BLIND_ZONE or status == ReadingStatus.INVALID:
-        done = finish_chain(landmarks, chain, reading, False, params)
-        return ChainUpdate(done, EchoChain())
-    if status == ReadingStatus.NO_ECHO:
-        chain = chain._replace(lost=chain.lost + 1)
-        if chain.used == 0 or not is_passed(chain, sensor):
-            return ChainUpdate(landmarks, chain)
-        done = finish_chain(landmarks, chain, reading, True, params)
-        return ChainUpdate(done, EchoChain(lost=chain.lost))
+class ChainEvent(IntEnum):
+    """What a reading means for a chain."""
+
+    CONTINUES = 0
+    ENDS_HIDDEN = 1
+    """Something nearer hides the body, or the vehicle turns back."""
+    ENDS_AT_EDGE = 2
+    """The body's edge has been passed."""
+
+
+def chain_event(chain: EchoChain, reading: SideReading) -> int:
+    """Return the ``ChainEvent`` of a reading."""
+    if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
+        return ChainEvent.ENDS_HIDDEN
     if chain.used == 0:
-        return ChainUpdate(landmarks, begin_chain(sensor, measured, chain.lost > 0))
-    if is_turned_back(chain, sensor):
-        done = finish_chain(landmarks, chain, reading, False, params)
-        return ChainUpdate(done, begin_chain(sensor, measured, False))
-    if not continues(chain, sensor, measured, reading.variance):
-        last = chain.echoes[max(chain.used - 1, 0)].range
-        done = finish_chain(landmarks, chain, reading, measured > last, params)
-        return ChainUpdate(done, begin_chain(sensor, measured, measured < last))
-    chain = append_echo(chain, sensor, measured)
-    if chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES:
-        return _fit_chain(landmarks, chain, reading, False, params)
-    return ChainUpdate(landmarks, chain)
+        return ChainEvent.CONTINUES
+    if reading.status == ReadingStatus.NO_ECHO:
+        passed = is_passed(chain._replace(lost=chain.lost + 1), reading.sensor)
+        return ChainEvent.ENDS_AT_EDGE if passed else ChainEvent.CONTINUES
+    if is_turned_back(chain, reading.sensor):
+        return ChainEvent.ENDS_HIDDEN
+    if continues(chain, reading.sensor, reading.range, reading.variance):
+        return ChainEvent.CONTINUES
+    return ChainEvent.ENDS_AT_EDGE if reading.range > last_range(chain) else ChainEvent.ENDS_HIDDEN
+
+
+def next_chain(chain: EchoChain, reading: SideReading, event: int) -> EchoChain:
+    """Return the chain after a reading: with one more echo, or the one that begins."""
+    if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
+        return EchoChain()
+    if reading.status == ReadingStatus.NO_ECHO:
+        lost = chain.lost + 1
+        return chain._replace(lost=lost) if event == ChainEvent.CONTINUES else EchoChain(lost=lost)
+    if chain.used == 0:
+        return begin_chain(reading.sensor, reading.range, chain.lost > 0)
+    if event != ChainEvent.CONTINUES:
+        hides = not is_turned_back(chain, reading.sensor) and reading.range < last_range(chain)
+        return begin_chain(reading.sensor, reading.range, hides)
+    return append_echo(chain, reading.sensor, reading.range)
+
+
+def last_range(chain: EchoChain) -> float:
+    """Return the range [m] of a chain's last echo."""
+    return chain.echoes[max(chain.used - 1, 0)].range
+
+
+def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
+    """Return whether a chain with the echo of ``reading`` is to be fitted."""
+    is_echo = reading.status == ReadingStatus.ECHO
+    return is_echo and chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES
 
 
 def finish_chain(
@@ -124,10 +146,10 @@ def finish_chain(
     """Return the landmarks with what a chain that has ended tells."""
     if chain.used < MIN_ECHOES:
         return landmarks
-    return _fit_chain(landmarks, chain, reading, ends_at_edge, params).landmarks
+    return fit_chain(landmarks, chain, reading, ends_at_edge, params).landmarks
 
 
-def _fit_chain(
+def fit_chain(
     landmarks: tuple[Landmark, ...],
     chain: EchoChain,
     reading: SideReading,

@@ -7,10 +7,19 @@ from controller_fmu.parking.map.association import (
     Explanation,
     associate,
     is_contradicted,
+    is_in_reach,
     predict_range,
     with_open_ends_extended,
 )
-from controller_fmu.parking.map.chain_update import SideReading, use_side_reading
+from controller_fmu.parking.map.chain_update import (
+    ChainEvent,
+    SideReading,
+    chain_event,
+    finish_chain,
+    fit_chain,
+    is_fit_due,
+    next_chain,
+)
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, replace_landmark
@@ -67,16 +76,16 @@ class LandmarkMap(NamedTuple):
 
 
 def update_map(
-    before: LandmarkMap, readings: tuple[float, ...], pose: Pose, sensors: CarUltrasonic, params: MappingParams
+    local_map: LandmarkMap, readings: tuple[float, ...], pose: Pose, sensors: CarUltrasonic, params: MappingParams
 ) -> LandmarkMap:
     """Return the map after one measurement cycle: ``readings`` [m] of all sensors of a vehicle at ``pose``."""
-    dx = pose.x - before.pose.x
-    dy = pose.y - before.pose.y
-    driven = math.sqrt(dx * dx + dy * dy) if before.begun else 0.0
-    local_map = before._replace(
-        landmarks=predict_landmarks(before.landmarks, pose, driven, params),
+    dx = pose.x - local_map.pose.x
+    dy = pose.y - local_map.pose.y
+    driven = math.sqrt(dx * dx + dy * dy) if local_map.begun else 0.0
+    local_map = local_map._replace(
+        landmarks=predict_landmarks(local_map.landmarks, pose, driven, params),
         pose=pose,
-        distance=before.distance + driven,
+        distance=local_map.distance + driven,
         begun=True,
     )
     variance = range_variance(params.range_noise, sensors.resolution)
@@ -96,24 +105,26 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
     else:
         local_map = _use_bumper(local_map, measurement, params)
     if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
-        local_map = local_map._replace(
-            landmarks=contradict_nearer(local_map.landmarks, measurement, params),
-            free_space=_with_ray(local_map.free_space, measurement),
-        )
+        local_map = contradict_nearer(local_map, measurement, params)
+        local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
     return local_map
 
 
 def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map after a reading of a sensor on a flank, which hears sides as it passes: chains of echoes."""
-    at = measurement.number - FIRST_SIDE
-    found = use_side_reading(
-        local_map.landmarks,
-        local_map.chains[at],
-        SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance),
-        params,
-    )
-    chains = tuple(found.chain if number == at else local_map.chains[number] for number in range(SIDE_SENSORS))
-    return local_map._replace(landmarks=found.landmarks, chains=chains)
+    at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
+    reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
+    event = chain_event(local_map.chains[at], reading)
+    if event != ChainEvent.CONTINUES:
+        at_edge = event == ChainEvent.ENDS_AT_EDGE
+        landmarks = finish_chain(local_map.landmarks, local_map.chains[at], reading, at_edge, params)
+        local_map = local_map._replace(landmarks=landmarks)
+    chain = next_chain(local_map.chains[at], reading, event)
+    if is_fit_due(chain, reading):
+        found = fit_chain(local_map.landmarks, chain, reading, False, params)
+        chain = found.chain
+        local_map = local_map._replace(landmarks=found.landmarks)
+    return local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
 
 
 def _use_bumper(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
@@ -124,15 +135,12 @@ def _use_bumper(local_map: LandmarkMap, measurement: Measurement, params: Mappin
         window = push_echo(window, measurement.sensor, measurement.range, measurement.variance)
     else:
         window = window._replace(is_new=False)
-    landmarks = local_map.landmarks
     feature = echo_feature(window, measurement.variance, measurement.sensor.cone_cos)
     if feature.type != FeatureType.NONE:
-        landmarks = use_feature(landmarks, feature, window, measurement.variance, params)
-    at = measurement.number
-    return local_map._replace(
-        landmarks=landmarks,
-        windows=tuple(window if number == at else local_map.windows[number] for number in range(SENSORS)),
-    )
+        landmarks = use_feature(local_map.landmarks, feature, window, measurement.variance, params)
+        local_map = local_map._replace(landmarks=landmarks)
+    at = min(max(measurement.number, 0), FIRST_SIDE - 1)
+    return local_map._replace(windows=local_map.windows[:at] + (window,) + local_map.windows[at + 1 :])
 
 
 def use_feature(
@@ -164,30 +172,35 @@ def expected_range(
     """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer."""
     nearest = planned
     for number in range(LANDMARKS):
-        if is_confirmed(landmarks[number], params):
-            predicted = predict_range(sensor, with_open_ends_extended(landmarks[number]))
+        landmark = landmarks[number]
+        if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, nearest.distance):
+            predicted = predict_range(sensor, with_open_ends_extended(landmark))
             if predicted.distance < nearest.distance:
                 nearest = predicted
     return nearest
 
 
-def contradict_nearer(
-    landmarks: tuple[Landmark, ...], measurement: Measurement, params: MappingParams
-) -> tuple[Landmark, ...]:
-    """Return the landmarks with those contradicted that had to be heard before this echo, or at all."""
+def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
+    """Return the map with those landmarks contradicted that had to be heard before this echo, or at all."""
     sensor = measurement.sensor
     for number in range(LANDMARKS):
-        landmark = landmarks[number]
-        if landmark.contradictions > 0 and measurement.status == ReadingStatus.ECHO:
-            predicted = predict_range(sensor, landmark)
-            if abs(predicted.distance - measurement.range) < CONFIRMING_RANGE:
-                landmarks = replace_landmark(landmarks, number, landmark._replace(contradictions=0))
-        if landmark.type != LandmarkType.NONE and is_contradicted(
-            landmark, sensor, measurement.range, measurement.min_range, measurement.variance
-        ):
-            predicted = predict_range(sensor, landmark)
-            landmarks = landmarks[:number] + (contradict(landmark, predicted, params),) + landmarks[number + 1 :]
-    return landmarks
+        landmark = local_map.landmarks[number]
+        if is_in_reach(landmark, sensor, measurement.range + CONFIRMING_RANGE):
+            is_echo = measurement.status == ReadingStatus.ECHO
+            after = landmark
+            if landmark.contradictions > 0 and is_echo and _is_heard(landmark, sensor, measurement.range):
+                after = landmark._replace(contradictions=0)
+            if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
+                after = contradict(landmark, predict_range(sensor, landmark), params)
+            local_map = local_map._replace(
+                landmarks=local_map.landmarks[:number] + (after,) + local_map.landmarks[number + 1 :]
+            )
+    return local_map
+
+
+def _is_heard(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:
+    """Return whether an echo at ``measured`` [m] confirms a landmark."""
+    return abs(predict_range(sensor, landmark).distance - measured) < CONFIRMING_RANGE
 
 
 def _with_ray(free_space: FreeSpace, measurement: Measurement) -> FreeSpace:

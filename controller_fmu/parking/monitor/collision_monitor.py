@@ -7,20 +7,27 @@ can always stop before what it may not touch; where it cannot move at all it rep
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.outline import VehicleOutline, outline_distance, pose_along_arc
+from controller_fmu.parking.geometry.outline import (
+    OutlineFrame,
+    VehicleOutline,
+    distance_in_frame,
+    outline_distance,
+    outline_frame,
+    pose_along_arc,
+)
 from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.map.landmark import (
     LANDMARKS,
     Landmark,
     LandmarkType,
     end_point,
-    segment_point,
     start_point,
 )
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 POSES = 8
@@ -60,6 +67,15 @@ class VehicleMotion(NamedTuple):
     deceleration: float
 
 
+class OutlineSweep(NamedTuple):
+    """The outline along the next ``horizon`` [m]."""
+
+    horizon: float
+    poses: tuple[OutlineFrame, ...] = (OutlineFrame(),) * POSES
+    """At horizon / POSES, twice that and so on."""
+    outline: VehicleOutline = VehicleOutline()
+
+
 class MonitorVerdict(NamedTuple):
     """What the monitor allows."""
 
@@ -85,10 +101,17 @@ def monitor_collision(
     free = UNLIMITED
     by_map = UNLIMITED
     if horizon > 0.0:
-        by_map = free_by_map(motion, horizon, outline, landmarks, params, mapping)
-        by_echoes = free_by_echoes(motion, horizon, outline, echoes, False, params)
+        poses = tuple(
+            outline_frame(
+                pose_along_arc(motion.pose, motion.direction * (horizon * (step + 1) / POSES), motion.curvature)
+            )
+            for step in range(POSES)
+        )
+        sweep = OutlineSweep(horizon, poses, outline)
+        by_map = free_by_map(motion, sweep, landmarks, params, mapping)
+        by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
         by_map = min(by_map, by_echoes)
-        free = min(by_map, free_by_echoes(motion, horizon, outline, echoes, True, params))
+        free = min(by_map, free_by_echoes(motion, sweep, echoes, True, params))
     limit = UNLIMITED if free >= UNLIMITED else speed_for_distance(free, motion.delay, motion.deceleration)
     least = RESTART if motion.speed <= 0.0 else stop
     return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free, by_map <= free)
@@ -96,23 +119,25 @@ def monitor_collision(
 
 def free_by_map(
     motion: VehicleMotion,
-    horizon: float,
-    outline: VehicleOutline,
+    sweep: OutlineSweep,
     landmarks: tuple[Landmark, ...],
     params: MonitorParams,
     mapping: MappingParams,
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to a confirmed landmark; UNLIMITED: farther."""
     free = UNLIMITED
+    horizon = sweep.horizon
+    outline = sweep.outline
     reach = horizon + math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
     for number in range(LANDMARKS):
         landmark = landmarks[number]
         if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach + outline.half_length):
-            least = landmark_distance(landmark, motion.pose, outline) - APPROACH
+            a = start_point(landmark)
+            b = end_point(landmark)
+            least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
                 way = horizon * step / POSES
-                pose = pose_along_arc(motion.pose, motion.direction * way, motion.curvature)
-                distance = landmark_distance(landmark, pose, outline)
+                distance = line_distance(a, b, sweep.poses[step - 1], outline)
                 if way < free and distance < params.map_distance and distance < least:
                     free = horizon * (step - 1) / POSES
     return free
@@ -120,24 +145,24 @@ def free_by_map(
 
 def free_by_echoes(
     motion: VehicleMotion,
-    horizon: float,
-    outline: VehicleOutline,
+    sweep: OutlineSweep,
     echoes: tuple[EchoObstacle, ...],
     unexplained: bool,
     params: MonitorParams,
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to an echo, as that approaches."""
     free = UNLIMITED
+    horizon = sweep.horizon
+    outline = sweep.outline
     for number in range(SENSORS):
         echo = echoes[number]
         if echo.is_present and echo.is_unexplained == unexplained:
             least = outline_distance(echo.x, echo.y, motion.pose, outline) - APPROACH
             for step in range(1, POSES + 1):
                 way = horizon * step / POSES
-                pose = pose_along_arc(motion.pose, motion.direction * way, motion.curvature)
                 time = motion.delay + min(MAX_RATE_TIME, 2.0 * way / max(motion.speed, APPROACH))
                 kept = params.echo_distance + echo.closing_speed * time if echo.is_unexplained else params.map_distance
-                distance = outline_distance(echo.x, echo.y, pose, outline)
+                distance = distance_in_frame(echo.x, echo.y, sweep.poses[step - 1], outline)
                 if way < free and distance < kept and (distance < least or echo.closing_speed > 0.0):
                     free = horizon * (step - 1) / POSES
     return free
@@ -147,12 +172,15 @@ def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -
     """Return the distance [m] from the outline of a vehicle at ``pose`` to a landmark, at most ``UNLIMITED``."""
     if landmark.type == LandmarkType.POINT:
         return outline_distance(landmark.x, landmark.y, pose, outline)
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    x = pose.x + outline.centre_ahead * cos
-    y = pose.y + outline.centre_ahead * sin
-    a = start_point(landmark)
-    b = end_point(landmark)
+    return line_distance(start_point(landmark), end_point(landmark), outline_frame(pose), outline)
+
+
+def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutline) -> float:
+    """Return the distance [m] from the outline of a vehicle at ``frame`` to the line a-b, at most ``UNLIMITED``."""
+    cos = frame.cos
+    sin = frame.sin
+    x = frame.x + outline.centre_ahead * cos
+    y = frame.y + outline.centre_ahead * sin
     square = edge_distance(
         (a.x - x) * cos + (a.y - y) * sin,
         (a.y - y) * cos - (a.x - x) * sin,
@@ -165,10 +193,10 @@ def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -
 
 
 def _is_within(landmark: Landmark, pose: Pose, reach: float) -> bool:
-    middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
-    radius = reach + 0.5 * (landmark.end - landmark.start)
-    dx = middle.x - pose.x
-    dy = middle.y - pose.y
+    """Return whether any point of a landmark may lie within ``reach`` [m] of a pose."""
+    radius = reach + max(landmark.end, -landmark.start)
+    dx = landmark.x - pose.x
+    dy = landmark.y - pose.y
     return dx * dx + dy * dy < radius * radius
 
 

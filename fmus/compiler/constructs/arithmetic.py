@@ -5,6 +5,7 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+from fmus.compiler.constructs.items import with_item
 from fmus.compiler.slicing import DeadValue
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
@@ -92,6 +93,9 @@ def name(body: FunctionBody, node: ast.Name) -> Value:
 
 def binary(body: FunctionBody, node: ast.BinOp) -> Value:
     """Return ``a + b`` and the like."""
+    changed = with_item(body, node)
+    if changed is not None:
+        return changed
     left, right = body.value(node.left), body.value(node.right)
     kind = type(node.op)
     if isinstance(left.kind, Array) or isinstance(right.kind, Array):

@@ -1,22 +1,26 @@
-"""``xs = xs[:i] + (x,) + xs[i + 1 :]``: the tuple with another item, written where the item lies."""
+"""``xs = xs[:i] + (x,) + xs[i + 1 :]``: the tuple with another item, written where the item lies.
+
+The same of a field: ``m = m._replace(xs=m.xs[:i] + (x,) + m.xs[i + 1 :])``.
+"""
 
 import ast
 
 from fmus.compiler.source.kinds import INT, Array, described
 from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.access import is_at
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
-from fmus.compiler.target.storage import put
-from fmus.compiler.target.values import UNKNOWN
+from fmus.compiler.target.storage import put, put_whole
+from fmus.compiler.target.values import UNKNOWN, Place, Value
 from fmus.compiler.target.variables import LocalVariable, looks_at
 
 
-def changed_item(node: ast.expr, name: str) -> tuple[ast.expr, ast.expr] | None:
-    """Return (index, new item) if ``node`` is ``name[:i] + (x,) + name[i + 1 :]``, else None."""
+def changed_item(node: ast.expr, whole: ast.expr) -> tuple[ast.expr, ast.expr] | None:
+    """Return (index, new item) if ``node`` is ``whole[:i] + (x,) + whole[i + 1 :]``, else None."""
     if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and isinstance(node.left, ast.BinOp)):
         return None
     head, middle, tail = node.left.left, node.left.right, node.right
-    before, after = _part(head, name), _part(tail, name)
+    before, after = _part(head, whole), _part(tail, whole)
     alone = isinstance(middle, ast.Tuple) and len(middle.elts) == 1
     if not isinstance(node.left.op, ast.Add) or before is None or after is None or not alone:
         return None
@@ -30,25 +34,66 @@ def changed_item(node: ast.expr, name: str) -> tuple[ast.expr, ast.expr] | None:
     return index, middle.elts[0]
 
 
-def _part(node: ast.expr, name: str) -> ast.Slice | None:
-    """Return the slice if ``node`` is a part of the tuple ``name``."""
-    if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == name:
+def _part(node: ast.expr, whole: ast.expr) -> ast.Slice | None:
+    """Return the slice if ``node`` is a part of the tuple ``whole``."""
+    if isinstance(node, ast.Subscript) and _path(node.value) and _path(node.value) == _path(whole):
         return node.slice if isinstance(node.slice, ast.Slice) else None
     return None
 
 
-def change_item(body: FunctionBody, known: LocalVariable, name: str, index: ast.expr, item: ast.expr) -> None:
-    """Write the new item; the index must be known to lie in the tuple, where Python would make it longer."""
-    if not isinstance(known.kind, Array):
-        raise CannotError(item, f"another item in {described(known.kind)}", "only tuples of one kind have items")  # type: ignore[arg-type]
-    place = body.value(index)
-    if place.kind != INT or place.const is not UNKNOWN or not place.lies_in(0, known.kind.length - 1):
+def _path(node: ast.expr) -> str:
+    """Return the names of a variable and its fields; empty: an expression of another form."""
+    if isinstance(node, ast.Name):
+        return node.id
+    within = _path(node.value) if isinstance(node, ast.Attribute) else ""
+    return f"{within}.{node.attr}" if within and isinstance(node, ast.Attribute) else ""
+
+
+def with_item(body: FunctionBody, node: ast.BinOp) -> Value | None:
+    """Return the tuple with another item as a value, which changes the tuple alone where it is put back."""
+    if not (isinstance(node.left, ast.BinOp) and isinstance(node.left.left, ast.Subscript)):
+        return None
+    whole = node.left.left.value
+    changed = changed_item(node, whole)
+    if changed is None:
+        return None
+    value = body.value(whole)
+    if not isinstance(value.kind, Array):
+        return None
+    kind = value.kind
+    index, item = _index(body, kind, changed[0]), _item(body, kind, changed[1])
+
+    def fill(place: Place) -> None:
+        target = place.element(index.text)
+        if is_at(body, value, place):
+            put_whole(body, target, item)
+        else:
+            put(body, place, value)
+            put(body, target, item)
+
+    return Value(kind, fill=fill, base=value if value.place else None)
+
+
+def _index(body: FunctionBody, kind: Array, node: ast.expr) -> Value:
+    """Return the index, which must be known to lie in the tuple, where Python would make it longer."""
+    place = body.value(node)
+    if place.kind != INT or place.const is not UNKNOWN or not place.lies_in(0, kind.length - 1):
         raise CannotError(
-            index,
-            f"an index that may lie outside of the {known.kind.length} items",
+            node,
+            f"an index that may lie outside of the {kind.length} items",
             "take it from range(len(xs)) or enumerate(xs)",
         )
-    why = f"an item is {described(known.kind.item)}"
-    new = coerced(body, body.value(item), known.kind.item, item, why)
-    target = known.place.element(place.text)
-    put(body, target, new, busy=looks_at(new, known.place.text, item, name))
+    return place
+
+
+def _item(body: FunctionBody, kind: Array, node: ast.expr) -> Value:
+    return coerced(body, body.value(node), kind.item, node, f"an item is {described(kind.item)}")
+
+
+def change_item(body: FunctionBody, known: LocalVariable, name: str, index: ast.expr, item: ast.expr) -> None:
+    """Write the new item."""
+    if not isinstance(known.kind, Array):
+        raise CannotError(item, f"another item in {described(known.kind)}", "only tuples of one kind have items")  # type: ignore[arg-type]
+    place = _index(body, known.kind, index)
+    new = _item(body, known.kind, item)
+    put(body, known.place.element(place.text), new, busy=looks_at(new, known.place.text, item, name))

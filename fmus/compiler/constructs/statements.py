@@ -49,7 +49,7 @@ def assign(body: FunctionBody, node: ast.Assign) -> None:
 
 
 def _assign_name(body: FunctionBody, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
-    item = changed_item(source, target.id)
+    item = changed_item(source, target)
     if item is not None:
         known = variable(body, target.id)
         if known.kind is None or (known.parameter and known.fixed):

@@ -148,10 +148,14 @@ def run(
         {name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path}
     )
     chosen, foreign = with_foreign(scenario, changes, given)
-    return Run(chosen, *driven(chosen, fmus or default_kind(), foreign, Path(log) if log is not None else None))
+    return Run(
+        chosen, *record_scenario(chosen, fmus or default_kind(), foreign, Path(log) if log is not None else None)
+    )
 
 
-def driven(scenario: Scenario, kind: str, foreign: Foreign, log: Path | None = None) -> tuple[Recording, Summary]:
+def record_scenario(
+    scenario: Scenario, kind: str, foreign: Foreign, log: Path | None = None
+) -> tuple[Recording, Summary]:
     """Return what a scenario's run has recorded, and its verdict; FMUs of ``kind`` are built if need be."""
     files = {} if kind == "none" else fmu_files(kind)
     ran = run_scenario(scenario, files, kind=kind, log=log, foreign=foreign)

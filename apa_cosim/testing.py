@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import pytest
 
-from apa_cosim.runs import Run, driven, with_foreign
+from apa_cosim.runs import Run, record_scenario, with_foreign
 from apa_cosim.verdicts import judge
 from orchestrator.cosim.kinds import default_kind
 from orchestrator.cosim.recording import Recording
@@ -92,7 +92,7 @@ def closed_loop_of(config: pytest.Config) -> Callable[..., ClosedLoopRun]:
 
     def closed_loop(scenario: str | Path | Scenario, changes: Mapping[str, object] | None = None) -> ClosedLoopRun:
         chosen, foreign = with_foreign(scenario, changes, given)
-        return ClosedLoopRun(chosen, *driven(chosen, kind, foreign))
+        return ClosedLoopRun(chosen, *record_scenario(chosen, kind, foreign))
 
     return closed_loop
 

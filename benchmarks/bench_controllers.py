@@ -27,8 +27,8 @@ from controller_fmu import MODEL
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
 from controller_fmu.zhang2022.qp import MAX_STAGES, solve
-from fmus.native.kept import kept_library
-from fmus.native.libraries import memory_size, model_files, typed
+from fmus.native.libraries import declare_functions, memory_size, model_files
+from fmus.native.library_cache import cache_library
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
 from orchestrator.cosim.recording import inputs_seen
@@ -116,7 +116,7 @@ def replay(params: Any, seen: list[Any], step_ns: int) -> list[float]:
 def compiled() -> Any:
     """Return the controller's C with the loops of ``controllers.c``."""
     files = {**model_files(MODEL), "controllers.c": Path(__file__).with_name("controllers.c").read_text()}
-    library = typed(ctypes.CDLL(str(kept_library("controllers", "controllers.c", files))))
+    library = declare_functions(ctypes.CDLL(str(cache_library("controllers", "controllers.c", files))))
     pointer, long, double = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
     library.bench_inputs.argtypes = [pointer, long, pointer]
     library.bench_inputs_size.restype = long

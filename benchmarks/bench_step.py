@@ -16,7 +16,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 
 from benchmarks.results import record, size
-from fmus.compiled_batch import compiled_rows
+from fmus.compiled_batch import compile_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
 from orchestrator.cosim.compiled_master import CompiledMaster
@@ -71,7 +71,7 @@ def libcosim_loop(ssp: Path) -> Loop:
 
 def in_process_loop(scenario: Scenario, clock: Loop = time.perf_counter) -> Loop:
     """Return the limit: the models' machine code and the exchange in one compiled loop, no FMI."""
-    rows = compiled_rows(MODELS, None, [])
+    rows = compile_rows(MODELS, None, [])
     values = [
         float(item.start)
         for name, model in MODELS.items()

@@ -20,8 +20,8 @@ from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
 from benchmarks.results import record, size
-from fmus.native.kept import kept_library
 from fmus.native.libraries import model_files
+from fmus.native.library_cache import cache_library
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
@@ -78,7 +78,7 @@ def bodies(n: int) -> Rounds:
 def compiled() -> Any:
     """Return the loops of ``bodies.c``, compiled with the vehicle's C."""
     files = {**model_files(MODEL), "bodies.c": Path(__file__).with_name("bodies.c").read_text()}
-    library = ctypes.CDLL(str(kept_library("bodies", "bodies.c", files)))
+    library = ctypes.CDLL(str(cache_library("bodies", "bodies.c", files)))
     for name in (*NAMES, "vehicle"):
         getattr(library, f"bench_{name}").restype = ctypes.c_double
     return library

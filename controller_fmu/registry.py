@@ -21,7 +21,7 @@ from controller_fmu.common.clock import Clock, begin, refusal_output, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.parking.params import ParkingSystem
 from controller_fmu.valet.params import ValetSystem
-from modelkit.composition import merged, named_tuple
+from modelkit.composition import make_named_tuple, merge_records
 from modelkit.model import Model, SampledSystem, SampledSystems, View
 from modelkit.signal import Signal
 from modelkit.states import union
@@ -95,20 +95,20 @@ if TYPE_CHECKING:
     ControllerOutput: TypeAlias = Any
     ControllerState: TypeAlias = Any
 else:
-    ControllerParams = merged(
+    ControllerParams = merge_records(
         "ControllerParams",
         __name__,
         "The system chosen, the car it thinks it drives, the target and every limit.",
         (Choosing, *(row.params for row in ROWS)),
     )
-    ControllerInput = merged("ControllerInput", __name__, "From the vehicle.", (row.inputs for row in ROWS))
-    ControllerOutput = merged(
+    ControllerInput = merge_records("ControllerInput", __name__, "From the vehicle.", (row.inputs for row in ROWS))
+    ControllerOutput = merge_records(
         "ControllerOutput",
         __name__,
         "To the vehicle, the driver, the log and the judge.",
         (*(row.told for row in ROWS), RefusedOutput),
     )
-    ControllerState = named_tuple(
+    ControllerState = make_named_tuple(
         "ControllerState",
         __name__,
         "Everything the controller remembers: its clock, and the memory of each system.",

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 
 from fmus.native.compilers import FLAGS
-from fmus.native.kept import kept_library
-from fmus.native.libraries import memory_size, model_files, typed
-from fmus.native.sources import translated
+from fmus.native.libraries import declare_functions, memory_size, model_files
+from fmus.native.library_cache import cache_library
+from fmus.native.sources import translate_model
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.fmu_files import fmu_files
@@ -97,7 +97,7 @@ def library(name: str) -> ctypes.CDLL:
     words = {"MODEL": model.name, "SOURCE": f'"{model.name}.c"', "MEMBERS": f'"{model.name}_members.h"'}
     head = "".join(f"#define EMBEDDED_{key} {value}\n" for key, value in words.items())
     files = {**model_files(model), unit: head + (FOLDER / "embedded.c").read_text(encoding="utf-8")}
-    return ctypes.CDLL(str(kept_library(f"embedded_{name}", unit, files)))
+    return ctypes.CDLL(str(cache_library(f"embedded_{name}", unit, files)))
 
 
 def stack() -> list[str]:
@@ -137,7 +137,7 @@ def deepest(graph: str) -> dict[str, int]:
 
 def write(model: Model, folder: Path) -> None:
     """Write the model's C and a math.h into ``folder``."""
-    code = translated(model)
+    code = translate_model(model)
     (folder / f"{code.name}.h").write_text(code.header, encoding="utf-8")
     (folder / f"{code.name}.c").write_text(code.source, encoding="utf-8")
 
@@ -179,7 +179,7 @@ def times() -> list[str]:
     """Return the table of step times: for each step of a drive the least of some rounds; then mean and worst."""
     lines = ["| microseconds | mean | worst | steps |", "|---|---:|---:|---:|"]
     for label, (name, drive, sets) in DRIVES.items():
-        scenario, model, made = load_scenario(drive, list(sets)), MODELS[name], typed(library(name))
+        scenario, model, made = load_scenario(drive, list(sets)), MODELS[name], declare_functions(library(name))
         signals = run_scenario(scenario, fmu_files("native"), kind="native").recording.signals
         rows = np.column_stack([signals[f"{name}.{item.name}"] for item in variables(model.inputs)]).astype(float)
         params = np.array(flatten(with_values(model.params, dict(getattr(scenario, name)))), dtype=float)

@@ -9,8 +9,8 @@ from marked import put
 
 import controller_fmu
 import vehicle_fmu
-from fmus.contents.arrays import shown_arrays
-from fmus.contents.variables import FmiVariable, shown_variables
+from fmus.contents.arrays import visible_arrays
+from fmus.contents.variables import FmiVariable, visible_variables
 from fmus.native.fmu import PAGE, build
 from modelkit.model import Model
 
@@ -25,7 +25,7 @@ def ports() -> list[str]:
     """Return the table of ports and parameters as an importer sees them."""
     lines = ["| FMU | inputs | outputs | parameters, of which tunable |", "|---|---|---|---|"]
     for model in MODELS:
-        versions = [shown_variables(model), [array.first for array in shown_arrays(model)]]
+        versions = [visible_variables(model), [array.first for array in visible_arrays(model)]]
         cells = [
             "{} ({})".format(*(sum(item.causality == causality for item in known) for known in versions))
             for causality in ("input", "output", "parameter")

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import controller_fmu
 import vehicle_fmu
+from fmus.cache_paths import DIST
 from fmus.contents.archive import archive_guid
 from fmus.native import fmu as native_fmu
 from fmus.native.compilers import can_compile, find_compiler
 from fmus.native.libraries import python_front
 from fmus.native.platforms import host
-from fmus.places import DIST
 from fmus.python import fmu as python_fmu
 from modelkit.model import Model
 

@@ -12,8 +12,8 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.native.kept import batch_library
 from fmus.native.libraries import load_model
+from fmus.native.library_cache import batch_library
 from fmus.native.structures import Long, Pointer, structure
 from fmus.study_slices import StudyCode
 from modelkit.connections import connections, part_of
@@ -26,7 +26,7 @@ FIRST_KEPT = 2
 """A row begins with the end (0 stop time, 1 standstill) and its time [ns]."""
 Doubles = NDArray[np.float64]
 Rows = Callable[[Doubles, NDArray[np.int64], Doubles, Doubles], None]
-"""``rows(parameters, times, faults, out)``: one run for each line of the arrays; see :func:`compiled_rows`."""
+"""``rows(parameters, times, faults, out)``: one run for each line of the arrays; see :func:`compile_rows`."""
 FAULTS = ("override", "stuck_at_last", "dropout", "delay", "noise")
 FAULT_NUMBERS = 4
 """Of each fault of a run: start [ns], stop [ns], amount, seed. The amount is what its kind needs: the value, nothing,
@@ -98,20 +98,20 @@ BatchC = structure(
 FaultC = structure("FaultC", kind=Long, model=Long, first=Long, count=Long)
 
 
-def used_signals(ending: Ending | None, kept: Sequence[Kept]) -> frozenset[str]:
+def signals_to_read(ending: Ending | None, kept: Sequence[Kept]) -> frozenset[str]:
     """Return the signals that decide when runs are over, and those that are kept of them."""
     found = {item.signal for item in kept} | {item.when.signal for item in kept if item.when is not None}
     return frozenset(found if ending is None else found | {ending.mode, ending.speed})
 
 
-def compiled_rows(
+def compile_rows(
     models: Mapping[str, Model],
     ending: Ending | None,
     kept: Sequence[Kept],
     faults: Sequence[Disturbed] = (),
     code: StudyCode | None = None,
 ) -> Rows:
-    """Return the compiled runs; of ``code``, made for this study (its slices must have :func:`used_signals`), or None.
+    """Return the compiled runs; of ``code``, made for this study (slices with :func:`signals_to_read`), or None.
 
     ``parameters``: for each run those of all models, one after the other, as doubles. ``times``: step
     [ns], stop [ns], then the decimation of each model. The ``faults`` of a run: ``FAULT_NUMBERS`` for each of those

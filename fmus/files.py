@@ -40,20 +40,20 @@ def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
         if path.exists() and not path.is_file() and not path.is_dir():
             yield path  # a device or a pipe: there is nothing beside it
             return
-        path = _resolved(path)
+        path = _resolve(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f".{ROOM}{os.getpid()}-{next(_numbers)}{MARK}{path.suffix}")
         try:
             yield part
             if sync:
-                synced(part)
+                sync_to_disk(part)
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
         if sync:
-            synced(path.parent)
+            sync_to_disk(path.parent)
     except OSError as error:
-        named = _named(error, path)
+        named = _with_target(error, path)
         if named is error:
             raise  # not from itself: who follows the causes would never end
         raise named from error
@@ -65,7 +65,7 @@ def write_whole(path: Path, content: bytes | str, *, sync: bool = False) -> None
         part.write_bytes(content.encode(errors="backslashreplace") if isinstance(content, str) else content)
 
 
-def synced(path: Path) -> None:
+def sync_to_disk(path: Path) -> None:
     """Wait until a file, or the names in a folder, are on the disk."""
     if os.name == "posix":
         handle = os.open(path, os.O_RDONLY)
@@ -81,7 +81,7 @@ def forget_parts(folder: Path) -> None:
         part.unlink(missing_ok=True)
 
 
-def _resolved(path: Path) -> Path:
+def _resolve(path: Path) -> Path:
     """Return the file that a path means. Raises ``OSError`` for one that is a ring of links, or no file's name."""
     try:
         found = path.resolve()
@@ -92,7 +92,7 @@ def _resolved(path: Path) -> Path:
     return found
 
 
-def _named(error: OSError, path: Path) -> OSError:
+def _with_target(error: OSError, path: Path) -> OSError:
     """Return the error with the place that was meant, not the one beside it."""
     if error.filename is None or MARK in Path(str(error.filename)).name:
         return type(error)(error.errno, error.strerror or str(error), str(path))

@@ -22,7 +22,7 @@ def one_at_a_time(path: Path) -> Iterator[None]:
         yield
 
 
-def kept_file(folder: Path, name: str, key: str, suffix: str, make: Callable[[], bytes], most: int = 0) -> Path:
+def cache_file(folder: Path, name: str, key: str, suffix: str, make: Callable[[], bytes], most: int = 0) -> Path:
     """Return ``folder/name-key.suffix``, made by ``make`` if there is none or it is not what was made.
 
     No reader ever sees half of it. When one is made, all but the ``most`` newest of this name and suffix are deleted;

@@ -6,8 +6,8 @@ import typing
 from typing import Any, NamedTuple
 
 from fmus.compiler import Refusal
-from fmus.compiler.source.kinds import NoKindError, hints_of, is_named_tuple, kind_of
 from fmus.compiler.source.reading import Library
+from fmus.compiler.source.types import NoKindError, hints_of, is_named_tuple, kind_of
 from fmus.contents.units import unit
 from modelkit.model import Model
 from modelkit.signal import Signal
@@ -46,13 +46,13 @@ def field_refusals(model: Model) -> list[Refusal]:
         lines = _lines(node)
         found += [
             Refusal(file, line, f"{cls.__name__}.{name} has no type", f"write {name}: float = {text}")
-            for name, (line, text) in _untyped(node).items()
+            for name, (line, text) in _fields_without_type(node).items()
         ]
         for name, hint in hints_of(cls).items():
             default = cls._field_defaults.get(name, ...)
             field = _Field(cls, name, hint, default, None)
             try:
-                todo += [(inner, needs_signal) for inner in _checked(field, needs_signal)]
+                todo += [(inner, needs_signal) for inner in _check_field(field, needs_signal)]
             except NoKindError as error:
                 what = f"{cls.__name__}.{name} is {error.what}"
                 found.append(Refusal(file, lines.get(name, 1), what, error.advice))
@@ -76,7 +76,7 @@ def _store_refusals(model: Model, library: Library) -> list[Refusal]:
     return []
 
 
-def _checked(field: _Field, needs_signal: bool) -> list[Any]:
+def _check_field(field: _Field, needs_signal: bool) -> list[Any]:
     """Return the NamedTuples inside a field. Raises if something is wrong."""
     hint, signal = field.hint, field.signal
     while typing.get_origin(hint) is typing.Annotated:
@@ -103,7 +103,7 @@ def _items(field: _Field, items: tuple[Any, ...], signal: Signal | None, needs_s
     return [
         inner
         for hint, value in pairs
-        for inner in _checked(field._replace(hint=hint, default=value, signal=signal), needs_signal)
+        for inner in _check_field(field._replace(hint=hint, default=value, signal=signal), needs_signal)
     ]
 
 
@@ -136,7 +136,7 @@ def _lines(node: ast.ClassDef | None) -> dict[str, int]:
     return found
 
 
-def _untyped(node: ast.ClassDef | None) -> dict[str, tuple[int, str]]:
+def _fields_without_type(node: ast.ClassDef | None) -> dict[str, tuple[int, str]]:
     """Return name -> (line, value) of what a class assigns without a type: no field at all."""
     body = node.body if node else []
     assigned = [item for item in body if isinstance(item, ast.Assign)]

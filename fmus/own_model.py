@@ -104,7 +104,7 @@ def _module(path: Path) -> ModuleType:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise BadModel(_said(error, path)) from error
+        raise BadModel(_read_error(error, path)) from error
     return module
 
 
@@ -120,7 +120,7 @@ def _check_name(name: str, file: Path) -> None:
         raise BadModel(f"{file}: there is another Python module called {name}: rename the file")
 
 
-def _said(error: Exception, path: Path) -> str:
+def _read_error(error: Exception, path: Path) -> str:
     """Return one line about what went wrong while a model was read."""
     if isinstance(error, SyntaxError):
         return f"{Path(error.filename or path).name}:{error.lineno}: {error.msg}"

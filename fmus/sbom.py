@@ -35,17 +35,17 @@ def wheel_sbom(path: Path) -> dict[str, Any]:
         if len(places) != 1:
             raise ValueError(f"{path}: no wheel: it has {len(places)} files METADATA")
         head = archive.read(places[0]).decode().partition("\n\n")[0].splitlines()
-        vendored = [_vendored(name, archive.read(name)) for name in archive.namelist() if VENDORED.search(name)]
+        vendored = [_vendor_component(name, archive.read(name)) for name in archive.namelist() if VENDORED.search(name)]
     fields = [tuple(line.split(": ", 1)) for line in head if ": " in line and not line.startswith(" ")]
     name, version = (next(value for key, value in fields if key == wanted) for wanted in ("Name", "Version"))
     top = _component("library", name, version, f"pkg:pypi/{_normal(name)}@{version}", "MIT") | _hashes(
         path.read_bytes()
     )
-    wanted = list(_required(value for key, value in fields if key == "Requires-Dist"))
+    wanted = list(_requirement_names(value for key, value in fields if key == "Requires-Dist"))
     needed: dict[str, Component] = {}
     depends = {top["bom-ref"]: [_add(one, needed, path) for one in wanted] + [item["bom-ref"] for item in vendored]}
     depends |= {
-        item["bom-ref"]: [_add(one, needed, path) for one in _required(distribution(key).requires or ())]
+        item["bom-ref"]: [_add(one, needed, path) for one in _requirement_names(distribution(key).requires or ())]
         for key, item in needed.items()
     }
     return _bom(top, [*needed.values(), *vendored], depends)
@@ -83,16 +83,16 @@ def _archive(path: Path) -> zipfile.ZipFile:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _required(lines: Iterable[str]) -> Iterator[str]:
+def _requirement_names(lines: Iterable[str]) -> Iterator[str]:
     """Yield the names that lines of requirements name, those of extras and of other systems left out."""
     for line in lines:
         text, _, marker = line.partition(";")
         found = REQUIREMENT.match(text)
-        if found and "extra ==" not in marker and (not marker or _installed(found[1]) is not None):
+        if found and "extra ==" not in marker and (not marker or _distribution(found[1]) is not None):
             yield found[1]
 
 
-def _installed(name: str) -> Distribution | None:
+def _distribution(name: str) -> Distribution | None:
     try:
         return distribution(name)
     except PackageNotFoundError:
@@ -101,19 +101,19 @@ def _installed(name: str) -> Distribution | None:
 
 def _add(name: str, needed: dict[str, Component], path: Path) -> str:
     """Return the reference of a package, which is now among those needed, with all that it needs."""
-    found = _installed(name)
+    found = _distribution(name)
     if found is None:
         raise ValueError(f"{path}: it requires {name}, which is not installed here")
     key, version = _normal(name), found.version
     if key not in needed:
         licence = str(found.metadata.json.get("license_expression") or "")
         needed[key] = _component("library", key, version, f"pkg:pypi/{key}@{version}", licence)
-        for other in _required(found.requires or ()):
+        for other in _requirement_names(found.requires or ()):
             _add(other, needed, path)
     return str(needed[key]["bom-ref"])
 
 
-def _vendored(name: str, content: bytes) -> Component:
+def _vendor_component(name: str, content: bytes) -> Component:
     found, version = VENDORED.search(name), VENDORED_VERSION.search(content[:400])
     assert found is not None
     number = version[1].decode() if version else "unknown"

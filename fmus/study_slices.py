@@ -4,12 +4,12 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from fmus.cache_paths import CACHE
 from fmus.compiler import live_inputs
 from fmus.compiler.slicing import Slice
-from fmus.locks import kept_file
+from fmus.locks import cache_file
 from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.sources import CACHED_TRANSLATIONS, own_packages
-from fmus.places import CACHE
 from modelkit.connections import Wire, connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -40,15 +40,15 @@ def study_slices(
     folders = dict.fromkeys(path for paths in packages for path in paths or ())
     key = hash_of([*folders, ROOT / "modelkit", ROOT / "fmus"], "\0".join(words))
 
-    def made() -> bytes:
+    def make() -> bytes:
         found = _solve(models, used, choices)
         return json.dumps({name: sorted(item.outputs) for name, item in found.items()}).encode()
 
-    kept = json.loads(kept_file(CACHE, "slices", key, ".slices.json", made, CACHED_TRANSLATIONS).read_bytes())
+    kept = json.loads(cache_file(CACHE, "slices", key, ".slices.json", make, CACHED_TRANSLATIONS).read_bytes())
     return {name: Slice(frozenset(outputs), choices.get(name)) for name, outputs in kept.items()}
 
 
-def omitted_outputs(models: Mapping[str, Model], slices: Mapping[str, Slice]) -> dict[str, list[str]]:
+def outputs_left_out(models: Mapping[str, Model], slices: Mapping[str, Slice]) -> dict[str, list[str]]:
     """Return, for each model, the names of the outputs that its slice does not compute."""
     return {
         name: [item.name for item in variables(model.outputs) if item.name not in slices[name].outputs]

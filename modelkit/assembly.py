@@ -27,7 +27,7 @@ BEHIND = "_behind_ns"
 """``<part>_behind_ns``: the field of the state that says how far the memory of a continuous part is behind."""
 
 
-def assembled(
+def assemble(
     name: str,
     description: str,
     package: ModuleType,
@@ -46,7 +46,7 @@ def assembled(
     memory = _memory(own)
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
-    outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
+    outputs = {part: (_output_field(model), model.outputs()) for part, model in own.parts}
     whole = Together(own, _tuple(f"{name}State", memory, package), _tuple(f"{name}Outputs", outputs, package))
     return Model(
         name=name,
@@ -199,7 +199,7 @@ def _only_store(name: str, parts: Mapping[str, Model]) -> type[Any] | None:
     return stores[0] if stores else None
 
 
-def _told(model: Model) -> Any:
+def _output_field(model: Model) -> Any:
     shape: Any = model.outputs
     return Annotated[shape, Role.SAMPLED] if model.sampled else shape
 

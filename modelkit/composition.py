@@ -17,7 +17,7 @@ class MergedField(NamedTuple):
     owner: type[Any]
 
 
-def merged(name: str, module: str, text: str, parts: Iterable[type[Any]]) -> type[Any]:
+def merge_records(name: str, module: str, text: str, parts: Iterable[type[Any]]) -> type[Any]:
     """Return the NamedTuple ``name`` of ``module`` with the fields of all ``parts``, NamedTuples with defaults.
 
     A field of several parts means the same in all. A mode may have other states in each: it has the union of them,
@@ -34,12 +34,12 @@ def merged(name: str, module: str, text: str, parts: Iterable[type[Any]]) -> typ
             modes = states_of(found.hint)
             if modes is not None and modes not in states.setdefault(field, []):
                 states[field].append(modes)
-        fields = _joined(fields, own)
+        fields = _merge_fields(fields, own)
     hints = {field: _with_states(found.hint, field, states.get(field, ()), module) for field, found in fields.items()}
-    return named_tuple(name, module, text, {field: (hints[field], fields[field].default) for field in fields})
+    return make_named_tuple(name, module, text, {field: (hints[field], fields[field].default) for field in fields})
 
 
-def named_tuple(name: str, module: str, text: str, fields: Mapping[str, tuple[Any, Any]]) -> type[Any]:
+def make_named_tuple(name: str, module: str, text: str, fields: Mapping[str, tuple[Any, Any]]) -> type[Any]:
     """Return a NamedTuple with ``fields``: name -> (annotation, default)."""
     made: Any = NamedTuple(name, [(field, hint) for field, (hint, _) in fields.items()])  # type: ignore[misc]
     made._field_defaults = {field: default for field, (_, default) in fields.items()}
@@ -88,10 +88,10 @@ def _whole(hint: Any) -> Any:
     marks = [mark for mark in getattr(hint, "__metadata__", ()) if not isinstance(mark, Subset)]
     if len(marks) == len(getattr(hint, "__metadata__", ())):
         return hint
-    return _annotated(hint.__origin__, marks)
+    return _annotate(hint.__origin__, marks)
 
 
-def _annotated(kind: Any, marks: Iterable[Any]) -> Any:
+def _annotate(kind: Any, marks: Iterable[Any]) -> Any:
     for mark in reversed(list(marks)):
         kind = Annotated[kind, mark]
     return kind
@@ -102,7 +102,7 @@ def _without_states(hint: Any) -> Any:
     if not marks:
         return hint
     plain = [mark._replace(states=None) if isinstance(mark, Signal) else mark for mark in marks]
-    return _annotated(hint.__origin__, plain)
+    return _annotate(hint.__origin__, plain)
 
 
 def _with_states(hint: Any, field: str, states: Iterable[type[IntEnum]], module: str) -> Any:
@@ -115,7 +115,7 @@ def _with_states(hint: Any, field: str, states: Iterable[type[IntEnum]], module:
         text = f"The states of ``{field}`` in all systems."
         whole = union("".join(word.title() for word in field.split("_")), module, text, *found)
     marks = [mark._replace(states=whole) if isinstance(mark, Signal) else mark for mark in hint.__metadata__]
-    return _annotated(hint.__origin__, marks)
+    return _annotate(hint.__origin__, marks)
 
 
 def _check(name: str, field: str, found: MergedField, known: MergedField) -> None:
@@ -128,7 +128,7 @@ def _check(name: str, field: str, found: MergedField, known: MergedField) -> Non
     raise CannotComposeError(f"{name}: {here} and {there} differ ({what}); expected them alike, or another name")
 
 
-def _joined(fields: dict[str, MergedField], own: dict[str, MergedField]) -> dict[str, MergedField]:
+def _merge_fields(fields: dict[str, MergedField], own: dict[str, MergedField]) -> dict[str, MergedField]:
     """Return the fields with those of another part, each new one before the next that both have."""
     order, waiting = list(fields), []
     for field in own:

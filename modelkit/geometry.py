@@ -49,7 +49,7 @@ class Corners(NamedTuple):
     front_right: Point
 
 
-def oriented(box: Box) -> OrientedBox:
+def orient(box: Box) -> OrientedBox:
     """Return ``box`` with cosine and sine of its heading."""
     return OrientedBox(box, math.cos(box.heading), math.sin(box.heading))
 
@@ -57,10 +57,10 @@ def oriented(box: Box) -> OrientedBox:
 def outline(pose: Pose, wheelbase: float, front_overhang: float, rear_overhang: float, width: float) -> Box:
     """Return the box around a car whose rear-axle midpoint is at ``pose``."""
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
-    return oriented_outline(pose, ahead, wheelbase, front_overhang, rear_overhang, width).box
+    return outline_box(pose, ahead, wheelbase, front_overhang, rear_overhang, width).box
 
 
-def oriented_outline(
+def outline_box(
     pose: Pose, ahead: Point, wheelbase: float, front_overhang: float, rear_overhang: float, width: float
 ) -> OrientedBox:
     """Return the box around a car as :func:`outline`; ``ahead`` is the unit vector of its heading."""
@@ -82,10 +82,10 @@ def line_box(x1: float, y1: float, x2: float, y2: float) -> Box:
 
 def corners(box: Box) -> Corners:
     """Return the four corners of ``box``."""
-    return oriented_corners(oriented(box))
+    return box_corners(orient(box))
 
 
-def oriented_corners(a: OrientedBox) -> Corners:
+def box_corners(a: OrientedBox) -> Corners:
     """Return the four corners of a box."""
     ax = 0.5 * a.box.length * a.cos
     ay = 0.5 * a.box.length * a.sin
@@ -103,7 +103,7 @@ def oriented_corners(a: OrientedBox) -> Corners:
 
 def point_gap(point: Point, box: Box) -> float:
     """Return the distance [m] from ``point`` to ``box``; 0 inside."""
-    return point_to_oriented(point, oriented(box))
+    return point_to_oriented(point, orient(box))
 
 
 def point_to_oriented(point: Point, a: OrientedBox) -> float:
@@ -119,16 +119,16 @@ def point_to_oriented(point: Point, a: OrientedBox) -> float:
 
 def boxes_overlap(a: Box, b: Box) -> bool:
     """Return whether the insides of two boxes share a point (separating axes; touching is not sharing)."""
-    return overlap_depth(oriented(a), oriented(b)) > 0.0
+    return overlap_depth(orient(a), orient(b)) > 0.0
 
 
 def boxes_gap(a: Box, b: Box) -> float:
     """Return the distance [m] between two boxes; 0 where they touch or overlap."""
-    gap = oriented_gap(oriented(a), oriented(b))
+    gap = box_gap(orient(a), orient(b))
     return gap if gap > 0.0 else 0.0
 
 
-def oriented_gap(a: OrientedBox, b: OrientedBox) -> float:
+def box_gap(a: OrientedBox, b: OrientedBox) -> float:
     """Return the distance [m] between two boxes; where they overlap, minus the :func:`overlap_depth`.
 
     Two rectangles apart are nearest at a corner of one of them.
@@ -136,12 +136,12 @@ def oriented_gap(a: OrientedBox, b: OrientedBox) -> float:
     depth = overlap_depth(a, b)
     if depth > 0.0:
         return -depth
-    return _smaller(_corners_gap(oriented_corners(a), b), _corners_gap(oriented_corners(b), a))
+    return _smaller(_corners_gap(box_corners(a), b), _corners_gap(box_corners(b), a))
 
 
 def boxes_depth(a: Box, b: Box) -> float:
     """Return the penetration depth [m] of two boxes: the shortest move that parts them; 0 where they do not overlap."""
-    depth = overlap_depth(oriented(a), oriented(b))
+    depth = overlap_depth(orient(a), orient(b))
     return depth if depth > 0.0 else 0.0
 
 
@@ -204,18 +204,18 @@ def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> flo
 
     The cone opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad].
     """
-    seen = oriented(box)
-    return cone_gap(cone_of(start, direction, half_angle), seen, oriented_corners(seen))
+    seen = orient(box)
+    return cone_gap(cone_of(start, direction, half_angle), seen, box_corners(seen))
 
 
 def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
     """Return the distance [m] to the part of a box, with the corners ``around``, inside a cone, else ``NO_HIT``."""
     if point_to_oriented(cone.start, a) == 0.0:
         return 0.0
-    front_left = _seen_from(around.front_left, cone)
-    rear_left = _seen_from(around.rear_left, cone)
-    rear_right = _seen_from(around.rear_right, cone)
-    front_right = _seen_from(around.front_right, cone)
+    front_left = _in_cone_frame(around.front_left, cone)
+    rear_left = _in_cone_frame(around.rear_left, cone)
+    rear_right = _in_cone_frame(around.rear_right, cone)
+    front_right = _in_cone_frame(around.front_right, cone)
     side = cone.side
     nearest = _smaller(_side_in_cone(front_left, rear_left, side), _side_in_cone(rear_left, rear_right, side))
     other = _smaller(_side_in_cone(rear_right, front_right, side), _side_in_cone(front_right, front_left, side))
@@ -225,7 +225,7 @@ def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
 def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Point) -> float:
     """Return the distance [m] to the part of the line a-b inside a cone, or ``NO_HIT``; see ``cone_box``."""
     cone = cone_of(start, direction, half_angle)
-    return _side_in_cone(_seen_from(a, cone), _seen_from(b, cone), cone.side)
+    return _side_in_cone(_in_cone_frame(a, cone), _in_cone_frame(b, cone), cone.side)
 
 
 def _depth_along(a: OrientedBox, b: OrientedBox, cos_turn: float, sin_turn: float) -> float:
@@ -252,7 +252,7 @@ def _slab(offset: float, rate: float, half: float) -> Point:
     return Point(one, other) if one < other else Point(other, one)
 
 
-def _seen_from(point: Point, cone: Cone) -> Point:
+def _in_cone_frame(point: Point, cone: Cone) -> Point:
     dx = point.x - cone.start.x
     dy = point.y - cone.start.y
     return Point(dx * cone.axis.x + dy * cone.axis.y, dy * cone.axis.x - dx * cone.axis.y)

@@ -94,14 +94,14 @@ class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
         """Return (state, outputs) at time zero: the model's ``initialize``."""
         memories = {item.field: item.start(params) for item in self.systems}
         state = self.state(**{self.clock: self.begin(params)}, **memories)
-        chosen = self._chosen(params)
+        chosen = self._select(params)
         return state, self._outputs(getattr(state, self.clock), chosen, state, params)
 
     def step(self, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
         """Return (state, outputs) after a step of the chosen system: the model's ``step``."""
         clock, samples, period_ns = self.tick(getattr(state, self.clock), params, dt_ns)
         changed = {self.clock: clock}
-        chosen = self._chosen(params)
+        chosen = self._select(params)
         if chosen is not None:
             own = getattr(state, chosen.field)
             for _ in range(samples):
@@ -110,7 +110,7 @@ class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
         state = _with(state, changed)
         return state, self._outputs(clock, chosen, state, params)
 
-    def _chosen(self, params: Params) -> SampledSystem[Any, Any, Any, Any] | None:
+    def _select(self, params: Params) -> SampledSystem[Any, Any, Any, Any] | None:
         value = getattr(params, self.parameter)
         return next((item for item in self.systems if value in item.values), None)
 
@@ -118,8 +118,8 @@ class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
         self, clock: Any, chosen: SampledSystem[Any, Any, Any, Any] | None, state: State, params: Params
     ) -> Output:
         if chosen is None or not clock.usable:
-            return _completed(self.outputs, self.refused())
-        return _completed(self.outputs, chosen.outputs(getattr(state, chosen.field), params))
+            return _complete(self.outputs, self.refused())
+        return _complete(self.outputs, chosen.outputs(getattr(state, chosen.field), params))
 
 
 class Terminal(NamedTuple):
@@ -215,7 +215,7 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
             return [self.package]
         return [package for _, part in self.assembly.parts for package in part.sources()]
 
-    def started(self, values: Mapping[str, Any]) -> "Model[State, Params, Input, Output]":
+    def with_start_values(self, values: Mapping[str, Any]) -> "Model[State, Params, Input, Output]":
         """Return the model with ``values`` as start values of parameters shown, and the defaults of the others.
 
         Values of parameters not shown are left out: they mean nothing to it. Raises ``KeyError`` for a parameter it
@@ -256,7 +256,7 @@ def _with(state: State, changed: dict[str, Any]) -> State:
     return cast("State", whole._replace(**changed))
 
 
-def _completed(outputs: type[Output], told: Any) -> Output:
+def _complete(outputs: type[Output], told: Any) -> Output:
     """Return the outputs of a system as those of the model, which has more."""
     shape: Any = type(told)  # mypy does not take a type for hashable
     whole: Any = outputs

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parent.parent
 FLOORS: tuple[tuple[str, ...], ...] = (
     ("modelkit", "fmus", "orchestrator"),
     ("vehicle_fmu", "controller_fmu"),
-    ("fmus.places", "fmus.files", "fmus.children", "fmus.installation"),
+    ("fmus.cache_paths", "fmus.files", "fmus.children", "fmus.installation"),
     ("fmus.locks",),
     ("fmus.contents",),
     ("fmus.compiler.source",),

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose, VehicleFault
-from vehicle_fmu.bodies.body import displayed_speed
+from vehicle_fmu.bodies.body import speed_for_display
 from vehicle_fmu.car import CarState, initial_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
 from vehicle_fmu.interface import Body, VehicleInput, VehicleOutput, VehicleParams
@@ -82,8 +82,8 @@ def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehiclePar
     speed = car.speed
     measured = car.speed if params.odometry.ideal else car.rolled_speed
     if params.body != Body.KINEMATIC:
-        speed = displayed_speed(speed)
-        measured = displayed_speed(measured)
+        speed = speed_for_display(speed)
+        measured = speed_for_display(measured)
     front = 0.0
     if state.fault != VehicleFault.BAD_PARAMETER:
         front = car.steering.play / params.car.steering.ratio

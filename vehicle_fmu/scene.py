@@ -14,11 +14,11 @@ from modelkit.geometry import (
     Box,
     OrientedBox,
     Point,
+    box_gap,
     centre_gap,
     line_box,
-    oriented,
-    oriented_gap,
-    oriented_outline,
+    orient,
+    outline_box,
 )
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
@@ -94,7 +94,7 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time
     is no contact: it gives 0.
     """
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
-    body = oriented_outline(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
+    body = outline_box(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
     nearest = NO_HIT
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
@@ -103,7 +103,7 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time
         if kerb.height > 0.0:
             part = body
             if kerb.height < scene.ground_clearance:
-                part = oriented_outline(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
+                part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
             nearest = nearer(nearest, part, line, kerb.height >= kerb_height)
     return nearest
@@ -113,7 +113,7 @@ def nearer(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> f
     """Return the smaller of ``nearest`` and the gap of car and thing, which is negative inside an obstacle."""
     if nearest > 0.0 and centre_gap(car.box, thing) >= nearest:
         return nearest
-    gap = oriented_gap(car, oriented(thing))
+    gap = box_gap(car, orient(thing))
     if gap <= 0.0:
         gap = -max(TOUCH_DEPTH, -gap) if is_obstacle else 0.0
     return min(nearest, gap)

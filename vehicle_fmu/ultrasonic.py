@@ -17,10 +17,10 @@ from modelkit.geometry import (
     Corners,
     OrientedBox,
     Point,
+    box_corners,
     cone_gap,
     line_box,
-    oriented,
-    oriented_corners,
+    orient,
     reach,
 )
 from modelkit.maths import clamp
@@ -116,8 +116,8 @@ class ScannedBox(NamedTuple):
 def _hear(
     distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, side: Point, box: Box
 ) -> tuple[float, ...]:
-    turned = oriented(box)
-    seen = ScannedBox(turned, oriented_corners(turned), reach(box))
+    turned = orient(box)
+    seen = ScannedBox(turned, box_corners(turned), reach(box))
     return tuple(
         _nearer(nearest, pose, ahead, mount, side, seen)
         for nearest, mount in zip(distances, sensors.mounts, strict=True)

@@ -25,20 +25,20 @@ def adaptive_outputs(state: AdaptiveState, params: AdaptiveSystemParams) -> Adap
         reference=to_world(state.foot.reference, state.frame),
         lateral_error=state.foot.lateral_error,
         heading_error=state.foot.heading_error,
-        adaptive=AdaptiveSignals(planned_move(state)),
+        adaptive=AdaptiveSignals(move_plan(state)),
     )
 
 
-def planned_move(state: AdaptiveState) -> AdaptiveMove:
+def move_plan(state: AdaptiveState) -> AdaptiveMove:
     """Return the move being driven, its curvature seen in the world with x along the car's heading; or none."""
     route = state.plan.route
     if route.direction == 0:
         return AdaptiveMove()
-    pieces = tuple(planned_piece(piece, state.frame.mirror) for piece in route.pieces)
+    pieces = tuple(piece_plan(piece, state.frame.mirror) for piece in route.pieces)
     return AdaptiveMove(to_world(route.start, state.frame), route.direction, pieces, state.end)
 
 
-def planned_piece(piece: Piece, mirror: float) -> PlannedPiece:
+def piece_plan(piece: Piece, mirror: float) -> PlannedPiece:
     """Return a piece of a route as it is seen in the world."""
     return PlannedPiece(piece.length, mirror * piece.k0, mirror * piece.k1)
 

@@ -35,16 +35,16 @@ def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
         reference=to_world(state.tracking.reference, frame),
         lateral_error=state.tracking.lateral_error,
         heading_error=state.tracking.heading_error,
-        path=planned_arcs(state.plan),
+        path=arc_plan(state.plan),
         guo2015=guo_signals(state.plan, params),
     )
 
 
-def planned_arcs(planned: Plan) -> Path:
+def arc_plan(planned: Plan) -> Path:
     """Return the start of the path and, where it is made of arcs, its pieces."""
     path = planned.path
     k = planned.frame.mirror / path.radius if path.found else 0.0
-    line = math.sqrt(_squared_distance(path.tangent1, path.tangent2))
+    line = math.sqrt(_distance_squared(path.tangent1, path.tangent2))
     pieces = (
         Segment(path.radius * (path.tangent1.heading - path.start.heading), -k),
         Segment(line, 0.0),
@@ -76,7 +76,7 @@ def guo_signals(planned: Plan, params: GuoSystemParams) -> GuoSignals:
     )
 
 
-def _squared_distance(a: Pose, b: Pose) -> float:
+def _distance_squared(a: Pose, b: Pose) -> float:
     dx = a.x - b.x
     dy = a.y - b.y
     return dx * dx + dy * dy

@@ -51,7 +51,7 @@ def steer(
     return FrontWheels(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
 
 
-def turned(steering: FrontWheels, car: FrontAxle, dt: float) -> FrontWheels:
+def turn_wheels(steering: FrontWheels, car: FrontAxle, dt: float) -> FrontWheels:
     """Return the steering ``dt`` [s] later at its present rate."""
     angle = clamp(steering.angle + steering.rate * dt, -car.angle_limit, car.angle_limit)
     return steering._replace(angle=angle)

@@ -41,7 +41,7 @@ def quintic_plan(state: ZhangState, params: ZhangSystemParams) -> QuinticPlan:
     )
 
 
-def planned_path(state: ZhangState) -> Path:
+def path_plan(state: ZhangState) -> Path:
     """Return the arc path whose key points the quintics go through; empty without a path."""
     if state.path.status == PathStatus.NONE:
         return Path()
@@ -75,6 +75,6 @@ def zhang_outputs(state: ZhangState, params: ZhangSystemParams) -> ZhangOutput:
         reference=to_world(state.reference.pose, state.frame),
         lateral_error=state.reference.lateral_error,
         heading_error=state.reference.heading_error,
-        path=planned_path(state),
+        path=path_plan(state),
         zhang2022=zhang_signals(state, params),
     )

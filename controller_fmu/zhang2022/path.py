@@ -101,7 +101,7 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     around the best are tried in finer steps before the start is refused.
     """
     if not (start.x > 0.1 and start.y > 0.01 and abs(start.heading) < 0.5):
-        return _refused(PathStatus.BAD_START, start, 0.0)
+        return _refuse(PathStatus.BAD_START, start, 0.0)
     widest = largest_radius(start.x, start.y)
     low = min(widest, radius)
     high = widest
@@ -130,7 +130,7 @@ def _first_within(start: Pose, low: float, high: float, curvature_limit: float) 
             if path.largest_curvature < smallest_peak:
                 smallest_peak = path.largest_curvature
                 best = arcs.radius
-    return PathTried(_refused(PathStatus.CURVATURE_LIMIT, start, smallest_peak), best)
+    return PathTried(_refuse(PathStatus.CURVATURE_LIMIT, start, smallest_peak), best)
 
 
 def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
@@ -149,7 +149,7 @@ def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
     )
 
 
-def joined_at(start: Pose, x: float, y: float, slope: float) -> QuinticPath:
+def join_quintics(start: Pose, x: float, y: float, slope: float) -> QuinticPath:
     """Return two quintics that meet at (``x``, ``y``) with ``slope`` and without curvature; no line between."""
     first = quintic(x, y, slope, start.x, start.y, math.tan(start.heading))
     line = Quintic(x, 1e-9, y, slope * 1e-9, 0.0, 0.0, 0.0)
@@ -257,5 +257,5 @@ def largest_curvature(piece: Quintic) -> float:
     return largest
 
 
-def _refused(status: int, start: Pose, peak: float) -> QuinticPath:
+def _refuse(status: int, start: Pose, peak: float) -> QuinticPath:
     return QuinticPath(status, start, EMPTY, peak)

@@ -18,7 +18,7 @@ class ZhangPhase(IntEnum):
     TAKEOVER = CommonPhase.TAKEOVER
 
 
-def expected_in(phase: int) -> Expected:
+def expectation_of(phase: int) -> Expected:
     """Return what is expected of driver and car in a phase."""
     direction = -1 if phase == ZhangPhase.PATH_TRACKING else 0
     return Expected(phase != ZhangPhase.STANDBY, direction, phase == ZhangPhase.STRAIGHTEN)

@@ -16,7 +16,7 @@ from controller_fmu.zhang2022.path import (
     EndConditions,
     PathStatus,
     QuinticPath,
-    joined_at,
+    join_quintics,
     largest_curvature,
     length_of,
     over_time,
@@ -54,11 +54,11 @@ class Searched(NamedTuple):
 
 def plan_in_slot(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
     """Return the path from ``start`` (slot frame) to the origin clear of the neighbours, or why there is none."""
-    path = _chosen(start, radius, limits)
+    path = _choose_path(start, radius, limits)
     return path._replace(length=length_of(path)) if path.status == PathStatus.FOUND else path
 
 
-def _chosen(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
+def _choose_path(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
     car = limits.car
     slot = limits.slot
     path = plan(start, radius, limits.curvature)
@@ -72,7 +72,7 @@ def _chosen(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
     over_time_path = refine(found.path, limits)
     if is_within(over_time_path, limits):
         return over_time_path
-    met = _joined(start, limits)
+    met = _search_joint(start, limits)
     if is_within(met.path, limits):
         return met.path
     blocked = path.status == PathStatus.FOUND or found.blocked or met.blocked
@@ -104,7 +104,7 @@ def _over_time(start: Pose, limits: PathLimits) -> Searched:
     return Searched(best, blocked)
 
 
-def _joined(start: Pose, limits: PathLimits) -> Searched:
+def _search_joint(start: Pose, limits: PathLimits) -> Searched:
     """Return the clear path of least curvature of two quintics that meet, within the curvature limit."""
     seen = math.atan2(start.y, start.x)
     best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, limits.curvature)
@@ -117,7 +117,7 @@ def _joined(start: Pose, limits: PathLimits) -> Searched:
                 heading = seen * (FLATTEST + (STEEPEST_SHARE - FLATTEST) * number / (HEADING_CANDIDATES - 1.0))
                 slope = math.tan(heading)
                 if largest_curvature(quintic(0.0, 0.0, 0.0, x, y, slope)) <= best.largest_curvature:
-                    path = joined_at(start, x, y, slope)
+                    path = join_quintics(start, x, y, slope)
                     if path.largest_curvature <= best.largest_curvature:
                         if is_path_clear(path, limits.car, limits.slot):
                             best = path

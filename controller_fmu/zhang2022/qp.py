@@ -21,7 +21,7 @@ from controller_fmu.zhang2022.qp_stage import (
     forward,
     infeasibility,
     longest,
-    moved,
+    move_node,
 )
 from modelkit.maths import clamp
 
@@ -90,7 +90,7 @@ def solve(now: Initial, stages: Stages, weights: Weights, tolerance: float, cap:
         mu = share * gap
         steps = _forward(_backward(nodes, stages, weights, mu), nodes, stages, weights, mu)
         length = _length(nodes, steps)
-        nodes = _moved(nodes, steps, length)
+        nodes = _move_nodes(nodes, steps, length)
         share = _next_share(length)
         gap = _gap(nodes)
     solved = gap < tolerance and _worst(nodes, weights) < tolerance
@@ -174,5 +174,5 @@ def _forward(k: Gains, n: Nodes, q: Stages, w: Weights, mu: float) -> Nodes:
     return steps
 
 
-def _moved(n: Nodes, s: Nodes, length: float) -> Nodes:
-    return tuple(moved(node, step, length) for node, step in zip(n, s, strict=True))
+def _move_nodes(n: Nodes, s: Nodes, length: float) -> Nodes:
+    return tuple(move_node(node, step, length) for node, step in zip(n, s, strict=True))

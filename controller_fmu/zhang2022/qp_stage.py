@@ -107,7 +107,7 @@ def violation(node: Node, w: Weights) -> Six:
     )
 
 
-def pushed(node: Node, w: Weights, mu: float) -> Six:
+def affine_multipliers(node: Node, w: Weights, mu: float) -> Six:
     """Return l + (l r - (l t - mu)) / t = (l r + mu) / t: multipliers if the state did not move."""
     r = violation(node, w)
     t, m = node.t, node.l
@@ -133,7 +133,7 @@ def backward(after: CostToGo, node: Node, stage: HorizonStage, w: Weights, mu: f
     Node costs and barrier terms are added to the value after, s is eliminated, the dynamics x+ = A (d + u)
     substituted, and the result minimised over u.
     """
-    push = pushed(node, w, mu)
+    push = affine_multipliers(node, w, mu)
     t, m = node.t, node.l
     b1, b2 = m.c1 / t.c1, m.c2 / t.c2
     h_es, h_ss = b2 - b1, w.q_s + b1 + b2
@@ -148,7 +148,7 @@ def backward(after: CostToGo, node: Node, stage: HorizonStage, w: Weights, mu: f
     h_uu = w.q_u + m.c5 / t.c5 + m.c6 / t.c6 + moved.p33
     g_u = w.q_u * node.u + push.c5 - push.c6 + moved.p3
     gain = Gain(-g_u / h_uu, -moved.p13 / h_uu, -moved.p23 / h_uu, -moved.p33 / h_uu)
-    return Back(_minimised(moved, gain, g_u), gain)
+    return Back(_minimise(moved, gain, g_u), gain)
 
 
 def _through_dynamics(v: CostToGo, stage: HorizonStage) -> CostToGo:
@@ -163,7 +163,7 @@ def _through_dynamics(v: CostToGo, stage: HorizonStage) -> CostToGo:
     )
 
 
-def _minimised(v: CostToGo, k: Gain, g_u: float) -> CostToGo:
+def _minimise(v: CostToGo, k: Gain, g_u: float) -> CostToGo:
     """Return the value before the input from that after it, with the best input put in."""
     return CostToGo(
         v.p11 + v.p13 * k.k1,
@@ -184,7 +184,7 @@ def forward(before: Node, gain: Gain, node: Node, stage: HorizonStage, w: Weight
     d = before.d + u
     psi = before.psi + stage.g * d
     e = before.e + stage.a * before.psi + stage.c * d
-    push = pushed(node, w, mu)
+    push = affine_multipliers(node, w, mu)
     s = softening_step(node, w, push, e)
     r = violation(node, w)
     t = Six(-r.c1 - e + s, -r.c2 + e + s, -r.c3 - d, -r.c4 + d, -r.c5 - u, -r.c6 + u)
@@ -204,7 +204,7 @@ def _multiplier_step(node: Node, step: Six, mu: float) -> Six:
     )
 
 
-def moved(node: Node, step: Node, length: float) -> Node:
+def move_node(node: Node, step: Node, length: float) -> Node:
     """Return the node moved along its step."""
     return Node(
         node.e + length * step.e,

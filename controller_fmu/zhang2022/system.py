@@ -9,10 +9,10 @@ from controller_fmu.common.slot_clearance import outline_of
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ParkingInput, Reason
-from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, steer, turn_wheels
 from controller_fmu.zhang2022.params import ZhangSystemParams
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest
-from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
+from controller_fmu.zhang2022.phases import ZhangPhase, expectation_of
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.planner import plan_in_slot
 from controller_fmu.zhang2022.refinement import PathLimits
@@ -49,29 +49,29 @@ def zhang_sample(state: ZhangState, inputs: ParkingInput, params: ZhangSystemPar
     if is_over(state.phase):
         return state
     if not is_usable_input(inputs):
-        return _ended(state, ZhangPhase.FAILED, Reason.BAD_INPUT)
+        return _end(state, ZhangPhase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, ZhangPhase.TAKEOVER, Reason.NONE)
+        return _end(state, ZhangPhase.TAKEOVER, Reason.NONE)
     if state.phase == ZhangPhase.STANDBY:
-        return _planned(inputs, params)
+        return _plan(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     reference = nearest(state.path, pose)
     wheel = steering_wheel_angle(state.steering.angle, state.frame.mirror, params)
-    expected = expected_in(state.phase)
+    expected = expectation_of(state.phase)
     monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, expected, state.running_ns, 1, params)
     if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.abort_lateral_error:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
-        return _ended(state, ZhangPhase.FAILED, reason)
+        return _end(state, ZhangPhase.FAILED, reason)
     state = state._replace(
         running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
         reference=reference,
         monitor=monitor,
     )
     if state.phase == ZhangPhase.STRAIGHTEN:
-        return _straightened(state, inputs, pose, params)
-    return _driven(state, inputs, pose, params, dt_ns)
+        return _straighten(state, inputs, pose, params)
+    return _drive(state, inputs, pose, params, dt_ns)
 
 
 def front_axle_of(params: ZhangSystemParams) -> FrontAxle:
@@ -82,7 +82,7 @@ def front_axle_of(params: ZhangSystemParams) -> FrontAxle:
     )
 
 
-def _planned(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
+def _plan(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
     """Return the system on its path, or failed for want of one."""
     car = front_axle_of(params)
     frame = frame_at(params.target, inputs.odometry)
@@ -106,7 +106,7 @@ def _planned(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
     )
 
 
-def _driven(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams, dt_ns: int) -> ZhangState:
+def _drive(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams, dt_ns: int) -> ZhangState:
     """Return the system with its steering and speed for the next sample; at the target it brakes."""
     zhang = params.zhang2022
     dt = dt_ns * 1e-9
@@ -124,13 +124,13 @@ def _driven(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSy
         phase=ZhangPhase.STRAIGHTEN if arrived else ZhangPhase.PATH_TRACKING,
         reason=Reason.NONE,
         solved_ns=solved_ns,
-        steering=turned(steering, car, dt),
+        steering=turn_wheels(steering, car, dt),
         set_speed=0.0 if arrived else set_speed,
         pid=speed,
     )
 
 
-def _straightened(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams) -> ZhangState:
+def _straighten(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams) -> ZhangState:
     """Return the system at the target: wheel to the middle, then parked or missed."""
     limit = params.threshold
     phase = ZhangPhase.STRAIGHTEN
@@ -149,5 +149,5 @@ def _straightened(state: ZhangState, inputs: ParkingInput, pose: Pose, params: Z
     )
 
 
-def _ended(state: ZhangState, phase: int, reason: int) -> ZhangState:
+def _end(state: ZhangState, phase: int, reason: int) -> ZhangState:
     return state._replace(phase=phase, reason=reason, set_speed=0.0)

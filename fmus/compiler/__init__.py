@@ -6,7 +6,7 @@
 What cannot be proved equal in C is refused (``Refused``) with its place and what to write instead.
 """
 
-from fmus.compiler.source.refusals import Refusal, Refused
+from fmus.compiler.source.diagnostics import Refusal, Refused
 from fmus.compiler.target.members import Member, member_path, members
 from fmus.compiler.translation import Translation, live_inputs, translate
 

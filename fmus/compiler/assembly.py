@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from fmus.compiler.entries import Entries
-from fmus.compiler.source.kinds import Struct
+from fmus.compiler.source.types import Struct
 from fmus.compiler.target.members import member_path
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Program
@@ -98,7 +98,7 @@ class AssemblyEntries(Entries):
     def _integrate(self, part: str, model: Model) -> Iterator[str]:
         """Yield the step of a continuous part: to the exchange from where its memory is, before it with a copy."""
         yield f"if (span_ns < {self.left}) {{"
-        yield f"{self.program.declared(Struct(model.state), 'between')} = state->{part};"
+        yield f"{self.program.declaration(Struct(model.state), 'between')} = state->{part};"
         yield ""
         yield f"state->{part}{BEHIND} += span_ns;"
         yield self._step(part, model, "&between", f"state->{part}{BEHIND}")

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.source.kinds import BOOL, INT, Array, Kind, Mixed, Struct, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import BOOL, INT, Array, Kind, Mixed, Struct, describe
 from fmus.compiler.target.functions import Instance, instance_of
 from fmus.compiler.target.members import members
 from fmus.compiler.target.names import member_name
@@ -50,7 +50,7 @@ class Entries:
         assert isinstance(function, FunctionType)
         made = instance_of(self.program, function, kinds, None)
         if made.result != result:
-            what = f"{function.__name__}() does not return {described(result)}"
+            what = f"{function.__name__}() does not return {describe(result)}"
             self.program.refuse(function.__module__, made.node, what, "return what the model's types say")
         return made
 
@@ -84,27 +84,27 @@ class Entries:
         if model.systems is not None:
             return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
-        found.append([initialize, "{", *self._given(first, ["params"]), "}"])
+        found.append([initialize, "{", *self._result_call(first, ["params"]), "}"])
         stores = [] if model.store is None else ["store"]
         made = self.instance(model.step, result, *(Struct(model.store) for _ in stores), state, inputs, params, INT)
         given = [*stores, "state", "inputs", "params", "dt_ns"]
         if state == outputs:
-            return [*found, [step, "{", *self._given(made, given), "}"]]
-        return [*found, [step, "{", *self._changed(made, state, "state", given, "outputs"), "}"]]
+            return [*found, [step, "{", *self._result_call(made, given), "}"]]
+        return [*found, [step, "{", *self._update_call(made, state, "state", given, "outputs"), "}"]]
 
-    def _given(self, made: Instance, given: list[str]) -> list[str]:
+    def _result_call(self, made: Instance, given: list[str]) -> list[str]:
         """Return the call of a function that gives state and outputs, which may be of one type."""
         if not isinstance(made.result, Array):
-            return [_called(made, given, "state", "outputs")]
-        both = f"{self.program.declared(made.result, 'both')};"
-        return [both, "", _called(made, given, "both"), "*state = both[0];", "*outputs = both[1];"]
+            return [_call(made, given, "state", "outputs")]
+        both = f"{self.program.declaration(made.result, 'both')};"
+        return [both, "", _call(made, given, "both"), "*state = both[0];", "*outputs = both[1];"]
 
-    def _changed(self, made: Instance, kind: Kind, place: str, given: list[str], *results: str) -> list[str]:
+    def _update_call(self, made: Instance, kind: Kind, place: str, given: list[str], *results: str) -> list[str]:
         """Return the call of a function that gives what ``place`` points to anew."""
         if made.changed is not None:
-            return [_called(made, given, place, *results)]
-        called = _called(made, given, "&next", *results)
-        return [f"{self.program.declared(kind, 'next')};", "", called, f"{_pointed(place)} = next;"]
+            return [_call(made, given, place, *results)]
+        called = _call(made, given, "&next", *results)
+        return [f"{self.program.declaration(kind, 'next')};", "", called, f"{_dereference(place)} = next;"]
 
     def _preset(self) -> list[str]:
         """Return the lines that set the parameters which start with another value than their default."""
@@ -134,17 +134,17 @@ class Entries:
         tick = self.instance(systems.tick, Mixed((clock, INT, INT)), clock, Struct(self.model.params), INT)
         time = f"state->{member_name(systems.clock)}"
         return [
-            f"{self.program.declared(clock, 'clock')};",
+            f"{self.program.declaration(clock, 'clock')};",
             "int64_t samples;",
             "int64_t period_ns;",
             "",
-            _called(tick, [f"&{time}", "params", "dt_ns"], "&clock", "&samples", "&period_ns"),
+            _call(tick, [f"&{time}", "params", "dt_ns"], "&clock", "&samples", "&period_ns"),
             f"{time} = clock;",
         ]
 
     def _refuse(self, systems: SampledSystems) -> list[str]:
         """Return what puts out that no system acts."""
-        return [_called(self.instance(systems.refused, Struct(self.model.outputs)), [], "outputs")]
+        return [_call(self.instance(systems.refused, Struct(self.model.outputs)), [], "outputs")]
 
     def _initialize(self, systems: SampledSystems, head: str) -> list[str]:
         """Return initialize: the clock and the memory of every system as they start, the outputs of the chosen one."""
@@ -153,15 +153,15 @@ class Entries:
         clock = f"state->{member_name(systems.clock)}"
         begin = self.instance(systems.begin, fields[systems.clock], params)
         refused = self._refuse(systems)
-        lines = [head, "{", _called(begin, ["params"], f"&{clock}")]
+        lines = [head, "{", _call(begin, ["params"], f"&{clock}")]
         for item in systems.systems:
             start = self.instance(item.start, fields[item.field], params)
-            lines.append(_called(start, ["params"], f"&state->{member_name(item.field)}"))
+            lines.append(_call(start, ["params"], f"&state->{member_name(item.field)}"))
         lines += [f"if (!{clock}.usable) {{", *refused, "return;", "}"]
 
         def outputs_of(item: SampledSystem) -> list[str]:
             ready = self.instance(item.outputs, outputs, fields[item.field], params)
-            return [_called(ready, [f"&state->{member_name(item.field)}", "params"], "outputs")]
+            return [_call(ready, [f"&state->{member_name(item.field)}", "params"], "outputs")]
 
         return [*lines, *self._choice(systems, outputs_of), "default:", *refused, "break;", "}", "}"]
 
@@ -185,10 +185,10 @@ class Entries:
             "{",
             *self._tick(systems),
             "for (int64_t i = 0; i < samples; ++i) {",
-            *self._changed(sample, own, f"&{memory}", [f"&{memory}", "inputs", "params", "period_ns"]),
+            *self._update_call(sample, own, f"&{memory}", [f"&{memory}", "inputs", "params", "period_ns"]),
             "}",
             "if (clock.usable) {",
-            _called(ready, [f"&{memory}", "params"], "outputs"),
+            _call(ready, [f"&{memory}", "params"], "outputs"),
             "} else {",
             *self._refuse(systems),
             "}",
@@ -196,17 +196,17 @@ class Entries:
         ]
 
 
-def _called(made: Instance, given: list[str], *results: str) -> str:
+def _call(made: Instance, given: list[str], *results: str) -> str:
     """Return the call of a function for pointers to its arguments, its results written to pointers."""
     pairs = zip(given, made.parameters, strict=True)
-    texts = [text if parameter.by_pointer or text in ("dt_ns", "period_ns") else _pointed(text)
+    texts = [text if parameter.by_pointer or text in ("dt_ns", "period_ns") else _dereference(text)
              for text, parameter in pairs]  # fmt: skip
     if made.changed is not None:
         results = (*results[: made.changed.result], *results[made.changed.result + 1 :])
     if made.outs or made.changed is not None:
         return f"{made.name}({', '.join([*texts, *results])});"
-    return f"{_pointed(results[0])} = {made.name}({', '.join(texts)});"
+    return f"{_dereference(results[0])} = {made.name}({', '.join(texts)});"
 
 
-def _pointed(address: str) -> str:
+def _dereference(address: str) -> str:
     return address[1:] if address.startswith("&") else Place(address, pointer=True).whole

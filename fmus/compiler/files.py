@@ -5,10 +5,10 @@ from collections.abc import Iterable
 from typing import Any
 
 from fmus.compiler.entries import Entries
-from fmus.compiler.source.kinds import Mixed, hints_of
+from fmus.compiler.source.types import Mixed, hints_of
 from fmus.compiler.target import runtime
 from fmus.compiler.target.functions import Instance
-from fmus.compiler.target.layout import comment, laid_out
+from fmus.compiler.target.layout import comment, indent_and_wrap
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.writing import Writer, in_order
 from modelkit.model import Model
@@ -62,7 +62,7 @@ class Files:
         lines += [f"    {type_name} {group};" for group, type_name in self.entries.types().items()]
         lines += [f"}} {name};", "", "#ifdef __cplusplus", 'extern "C" {', "#endif"]
         for head, meaning in zip(self.entries.heads(), MEANINGS, strict=True):
-            lines += ["", f"/* {meaning} */", *laid_out([f"{head};"])]
+            lines += ["", f"/* {meaning} */", *indent_and_wrap([f"{head};"])]
         return "\n".join([*lines, "", "#ifdef __cplusplus", "}", "#endif", "", "#endif", ""])
 
     def source(self, entries: list[list[str]]) -> str:
@@ -75,7 +75,7 @@ class Files:
             sections += [*_rule(program.library.module(module).file), *lines] if lines else []
         head = [f"/* {self.model.name} in C99, made from Python: each part says from which file. */", ""]
         head += [f'#include "{self.model.name}.h"', "", "#include <math.h>", "", *PRAGMA]
-        ends = [line for lines in entries for line in ["", *laid_out(lines)]]
+        ends = [line for lines in entries for line in ["", *indent_and_wrap(lines)]]
         return "\n".join([*head, *runtime.text(program.helpers), *sections, *_rule("entries"), *ends, ""])
 
     def _section(self, module: str, constants: list[str]) -> list[str]:
@@ -93,7 +93,7 @@ class Files:
         rest += [line for made in functions for line in writer.function(made)]
         tuples = [kind for kind, name in program.mixed.items() if kind not in self.tuples and _mentions(rest, name)]
         self.tuples |= set(tuples)
-        return [*types, *(line for kind in tuples for line in writer.mixed(kind)), *rest]
+        return [*types, *(line for kind in tuples for line in writer.tuple_type(kind)), *rest]
 
     def _own(self, items: Iterable[Any], module: str) -> list[Any]:
         return [item for item in items if item.__module__ == module]

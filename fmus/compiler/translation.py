@@ -9,9 +9,9 @@ from fmus.compiler.constructs import arithmetic, calls, conditions, loops, state
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
 from fmus.compiler.slicing import Slice, SliceResult, fields_along, slice_program
-from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple, translating
+from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError, Refusal, Refused
 from fmus.compiler.source.reading import Library
-from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
+from fmus.compiler.source.types import NoKindError, Struct, is_named_tuple, translating
 from fmus.compiler.target.program import Program
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -31,7 +31,7 @@ class Translation(NamedTuple):
 def translate(model: Model, live: Slice | None = None) -> Translation:
     """Return the C99 of ``model``, or of the slice ``live`` of it; ``Refused`` says all that stands in the way."""
     with _types_of(model):
-        return _translated(model, _interface(model), live)
+        return _translate(model, _interface(model), live)
 
 
 def live_inputs(model: Model, live: Slice) -> frozenset[str]:
@@ -49,7 +49,7 @@ def _types_of(model: Model) -> AbstractContextManager[None]:
 
 
 def _slice(model: Model, interfaces: list[Any], live: Slice) -> SliceResult:
-    found = chosen(model, live.choices)
+    found = select_systems(model, live.choices)
     return slice_program(Library(), _roots(found), interfaces, model.outputs, sorted(live.outputs))
 
 
@@ -64,10 +64,10 @@ def _wholes(model: Model) -> dict[Any, Any]:
     return found | ({} if told is None else {told: model.outputs})
 
 
-def _translated(model: Model, interfaces: list[Any], live: Slice | None) -> Translation:
+def _translate(model: Model, interfaces: list[Any], live: Slice | None) -> Translation:
     library = None
     if live is not None:
-        model, library = chosen(model, live.choices), _slice(model, interfaces, live).library
+        model, library = select_systems(model, live.choices), _slice(model, interfaces, live).library
     parts = () if model.assembly is None else tuple(part.name for _, part in model.assembly.parts)
     program = Program((model.name, *parts), _roots(model), interfaces, NAMES, library)
     entries = Entries(program, model) if model.assembly is None else AssemblyEntries(program, model, model.assembly)
@@ -85,7 +85,7 @@ def _translated(model: Model, interfaces: list[Any], live: Slice | None) -> Tran
     return Translation(model.name, files.header(), files.source(functions))
 
 
-def chosen(model: Model, choices: frozenset[int] | None) -> Model:
+def select_systems(model: Model, choices: frozenset[int] | None) -> Model:
     """Return the model with those of its systems alone that a value of ``choices`` chooses."""
     if choices is None or model.systems is None:
         return model

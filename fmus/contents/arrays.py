@@ -44,9 +44,9 @@ class FmiArray(NamedTuple):
         return {float: "Float64", int: "Int32", bool: "Boolean"}[self.first.kind]
 
     @property
-    def shown(self) -> bool:
+    def is_exposed(self) -> bool:
         """Return whether the description names it."""
-        return all(item.shown for item in self.elements)
+        return all(item.is_exposed for item in self.elements)
 
     @property
     def starts(self) -> tuple[Any, ...]:
@@ -68,9 +68,9 @@ def alone(item: FmiVariable) -> FmiArray:
     return FmiArray(item.name, item.vr, (item,), ())
 
 
-def shown_arrays(model: Model) -> list[FmiArray]:
+def visible_arrays(model: Model) -> list[FmiArray]:
     """Return the variables that an importer sees, in the order of the description."""
-    shown = [item for item in fmi_arrays(model) if item.shown]
+    shown = [item for item in fmi_arrays(model) if item.is_exposed]
     return sorted(shown, key=lambda item: ORDER.index(item.first.causality))
 
 
@@ -79,7 +79,7 @@ def _variable(name: str, items: list[FmiVariable]) -> Iterator[FmiArray]:
     indices = [tuple(int(number) for number in INDEX.findall(item.name)) for item in items]
     shape = tuple(max(index) for index in zip(*indices, strict=True))
     complete = len(items) == _count(shape) and len(shape) <= MOST_DIMENSIONS
-    if complete and len({(item.kind, item.causality, item.variability, item.shown) for item in items}) == 1:
+    if complete and len({(item.kind, item.causality, item.variability, item.is_exposed) for item in items}) == 1:
         ordered = tuple(item for _, item in sorted(zip(indices, items, strict=True), key=lambda pair: pair[0]))
         yield FmiArray(name, 0, ordered, shape)
     else:

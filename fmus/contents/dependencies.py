@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import modelkit
+from fmus.cache_paths import CACHE
 from fmus.contents.archive import content_hash
-from fmus.locks import kept_file
-from fmus.places import CACHE
+from fmus.locks import cache_file
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor, flattener, variables
 
@@ -58,9 +58,9 @@ def initial_dependencies(model: Model) -> Found:
             for output, names in initial_dependencies(own).items()
             if model.shows(f"{part}.{output}")
         }
-    model = model.started({})
+    model = model.with_start_values({})
     key = _hash(model)[:32]
-    path = kept_file(
+    path = cache_file(
         CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), CACHED_RESULTS
     )
     found: Found = json.loads(path.read_bytes())
@@ -122,7 +122,7 @@ def _acting(model: Model, known: list[Variable], free: list[int]) -> dict[str, s
         for place in free:
             for value in _ways(known[place], point[place]):
                 search(point, expected, {place: value}, (place,))
-    for point in _drawn_points(known, free, model.name):
+    for point in _sample_points(known, free, model.name):
         expected = start(point)
         ways = {place: _ways(known[place], point[place]) for place in free}
         for number in range(MOVES_PER_POINT):
@@ -156,7 +156,7 @@ def _plain_points(known: list[Variable], free: list[int]) -> Iterator[Values]:
             yield [value if place == other else item for other, item in enumerate(first)]
 
 
-def _drawn_points(known: list[Variable], free: list[int], seed: str) -> Iterator[Values]:
+def _sample_points(known: list[Variable], free: list[int], seed: str) -> Iterator[Values]:
     """Return points around the defaults; of the arrays, half are left as they are in each."""
     draw = random.Random(seed)
     arrays = sorted({item.name.split("[")[0] for item in known if "[" in item.name})
@@ -165,7 +165,7 @@ def _drawn_points(known: list[Variable], free: list[int], seed: str) -> Iterator
         point = [item.start for item in known]
         for place in free:
             if not known[place].name.startswith(left):
-                point[place] = _drawn(known[place], draw)
+                point[place] = _sample(known[place], draw)
         yield point
 
 
@@ -176,7 +176,7 @@ def _others(item: Variable) -> list[Any]:
     return [int(state) for state in item.signal.states or () if state != item.start]
 
 
-def _drawn(item: Variable, draw: random.Random) -> Any:
+def _sample(item: Variable, draw: random.Random) -> Any:
     """Return the default, a value near it, or seldom an end of the range."""
     keep, share = draw.random() < 0.4, draw.uniform(-1.0, 1.0)
     others = _others(item)

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.units import unit
-from fmus.contents.variables import FmiVariable, describe, limits, mode_types, shown_variables, states_text
+from fmus.contents.variables import FmiVariable, describe, limits, mode_types, states_text, visible_variables
 from fmus.contents.xml_file import as_text, xml_bytes
 from modelkit.model import Model
 
@@ -40,7 +40,7 @@ def model_description(
 
     ``sources`` are the files in the folder ``sources`` that a compiler is given.
     """
-    known = shown_variables(model)
+    known = visible_variables(model)
     types = mode_types(model)
     root = description_root(model, 2, generation_tool, guid=guid)
     root.append(_interface(model, flags, sources))

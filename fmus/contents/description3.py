@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.contents.arrays import FmiArray, shown_arrays
+from fmus.contents.arrays import FmiArray, visible_arrays
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.description import (
     co_simulation,
@@ -33,7 +33,7 @@ States = Mapping[type[IntEnum], str]
 
 def model_description3(model: Model, *, token: str, generation_tool: str, flags: Mapping[str, bool]) -> bytes:
     """Return modelDescription.xml. ``flags`` are the capability attributes of the CoSimulation element."""
-    known = shown_arrays(model)
+    known = visible_arrays(model)
     types = mode_types(model)
     root = description_root(model, 3, generation_tool, instantiationToken=token)
     root.append(co_simulation(model, flags))

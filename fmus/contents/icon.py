@@ -24,7 +24,7 @@ def icon(name: str, inputs: int, outputs: int) -> bytes:
     """Return a PNG of 96 by 96 pixels; at most five ports are drawn on a side."""
     hue = hashlib.sha256(name.encode()).digest()[0] / 256.0
     red, green, blue = (round(255 * part) for part in colorsys.hls_to_rgb(hue, 0.42, 0.65))
-    pixels = _averaged(_points((red, green, blue, 255.0), min(inputs, 5), min(outputs, 5)))
+    pixels = _average(_points((red, green, blue, 255.0), min(inputs, 5), min(outputs, 5)))
     header = struct.pack(">IIBBBBB", ICON_PIXELS, ICON_PIXELS, 8, 6, 0, 0, 0)
     rows = b"".join(b"\0" + row.tobytes() for row in pixels)
     chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows, 9)), (b"IEND", b""))
@@ -35,7 +35,7 @@ def _chunk(kind: bytes, content: bytes) -> bytes:
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
 
-def _averaged(points: Array) -> NDArray[np.uint8]:
+def _average(points: Array) -> NDArray[np.uint8]:
     """Return the mean colour of each pixel, shape (SIZE, SIZE, 4), from its SAMPLES by SAMPLES points."""
     cells = (
         points.reshape(ICON_PIXELS, SUBPIXELS, ICON_PIXELS, SUBPIXELS, 4)

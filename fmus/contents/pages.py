@@ -2,10 +2,10 @@
 
 from html import escape
 
-from fmus.contents.arrays import FmiArray, alone, shown_arrays
+from fmus.contents.arrays import FmiArray, alone, visible_arrays
 from fmus.contents.description import project_version
 from fmus.contents.units import unit
-from fmus.contents.variables import describe, limits, shown_variables
+from fmus.contents.variables import describe, limits, visible_variables
 from modelkit.model import Model
 
 LICENCE = """MIT License
@@ -66,7 +66,7 @@ TYPES = {
 
 def index_page(model: Model, needs: str, fmi: int = 2) -> bytes:
     """Return the page; ``needs`` is HTML that says what the host must have."""
-    known = shown_arrays(model) if fmi == 3 else [alone(item) for item in shown_variables(model)]
+    known = visible_arrays(model) if fmi == 3 else [alone(item) for item in visible_variables(model)]
     parts = [
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(model.name)}</title>",
         f"<style>{STYLE}</style></head><body>",

@@ -29,7 +29,7 @@ class FmiVariable(NamedTuple):
     start: Any
     """Start value of a parameter or input; None for outputs and time, which are calculated."""
     signal: Signal
-    shown: bool = True
+    is_exposed: bool = True
     """False: it has place and start value, but the description does not name it (see ``modelkit.model.View``)."""
 
     @property
@@ -61,9 +61,9 @@ def fmi_variables(model: Model) -> list[FmiVariable]:
     return found
 
 
-def shown_variables(model: Model) -> list[FmiVariable]:
+def visible_variables(model: Model) -> list[FmiVariable]:
     """Return the variables that an importer sees, in the order of the description."""
-    shown = [variable for variable in fmi_variables(model) if variable.shown]
+    shown = [variable for variable in fmi_variables(model) if variable.is_exposed]
     return sorted(shown, key=lambda variable: ORDER.index(variable.causality))
 
 

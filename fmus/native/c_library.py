@@ -5,7 +5,7 @@ from pathlib import Path
 from fmus.compiler import members
 from fmus.files import write_whole
 from fmus.native.compilers import FLAGS
-from fmus.native.sources import translated
+from fmus.native.sources import translate_model
 from modelkit.model import Model
 
 PRINTED_OUTPUTS = 4
@@ -56,7 +56,7 @@ clean:
 
 def write_c_library(model: Model, folder: Path) -> list[Path]:
     """Return the files written to ``folder``. Raises ``TypeError`` if the model cannot be translated."""
-    code, flags = translated(model), " ".join(FLAGS)
+    code, flags = translate_model(model), " ".join(FLAGS)
     files = {
         f"{model.name}.h": code.header,
         f"{model.name}.c": code.source,

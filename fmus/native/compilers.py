@@ -10,11 +10,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from fmus.cache_paths import CACHE, can_write
 from fmus.children import PYTHON, run_child
 from fmus.files import folder_for_a_while
 from fmus.installation import install_command
 from fmus.native.platforms import CompileTarget, host_target
-from fmus.places import CACHE, can_write
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
 """What every compiler is told that the results depend on, or the speed."""
@@ -61,10 +61,10 @@ class Compiler(NamedTuple):
         return self.is_zig or target.triple == host_target().triple
 
     def library(self, files: Mapping[str, str], unit: str, name: str, target: CompileTarget) -> bytes:
-        """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`linked`."""
-        return self.linked(files, [unit], name, target).content
+        """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`link`."""
+        return self.link(files, [unit], name, target).content
 
-    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> Compiled:
+    def link(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> Compiled:
         """Return what the files ``units`` among ``files`` become together.
 
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.

@@ -8,7 +8,7 @@ from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.description3 import ABILITIES as ABILITIES3
 from fmus.contents.description3 import model_description3
-from fmus.contents.extras import documentation, reference_result
+from fmus.contents.fmu_documentation import documentation, reference_result
 from fmus.contents.xml_file import xml_bytes
 from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
@@ -95,7 +95,7 @@ def binaries(
     for name in platforms:
         platform = PLATFORMS[name]
         file = f"{model.name}{platform.suffix}"
-        compiled = [compiler.linked(sources, [unit], file, target) for target in platform.targets]
+        compiled = [compiler.link(sources, [unit], file, target) for target in platform.targets]
         frame = max(frame, *(one.largest_frame for one in compiled))
         made = [one.content for one in compiled]
         if fmi == 3:

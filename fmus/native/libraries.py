@@ -9,9 +9,9 @@ from typing import Any
 from fmus.compiler import members
 from fmus.compiler.slicing import Slice
 from fmus.native.compilers import can_compile, find_compiler
-from fmus.native.kept import kept_library, own_files
+from fmus.native.library_cache import cache_library, own_files
 from fmus.native.platforms import LINUX, is_known
-from fmus.native.sources import translated
+from fmus.native.sources import translate_model
 from fmus.native.tables import KINDS
 from modelkit.model import Model
 from modelkit.variables import flatten, variables
@@ -43,17 +43,17 @@ def python_front(cc: str | None = None) -> bytes | None:
     if not compiler.can_make(target):
         return None
     files = own_files("python_front.c", "fmi2.h")
-    return kept_library("python_front", "python_front.c", files, compiler, target).read_bytes()
+    return cache_library("python_front", "python_front.c", files, compiler, target).read_bytes()
 
 
 @lru_cache
 def model_library(model: Model, live: Slice | None = None, options: tuple[str, ...] = ()) -> Path:
-    """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``.
+    """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`cache_library`, ``TypeError``.
 
     ``live``: of that slice of it alone; ``options``: of the compiler, besides the usual ones.
     """
     unit, name = f"{model.name}_library.c", model.name if live is None else f"{model.name}_slice"
-    return kept_library(name, unit, {**model_files(model, live), unit: model_unit(model)}, options=options)
+    return cache_library(name, unit, {**model_files(model, live), unit: model_unit(model)}, options=options)
 
 
 def model_unit(model: Model) -> str:
@@ -63,7 +63,7 @@ def model_unit(model: Model) -> str:
 
 def model_files(model: Model, live: Slice | None = None) -> dict[str, str]:
     """Return the files with which a C file can have the model as a table: it includes what ``UNIT`` does."""
-    code, known = translated(model, live), members(model)
+    code, known = translate_model(model, live), members(model)
     count = {group: sum(item.group == group for item in known) for group in ("params", "inputs", "outputs")}
     lines = "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known)
     files = {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
@@ -77,10 +77,10 @@ def load_model(model: Model, live: Slice | None = None, options: tuple[str, ...]
     ``model_library()``: the table; ``model_start(memory, params, outputs)``; ``model_step(memory, inputs, outputs,
     dt_ns)``: all arrays by their addresses.
     """
-    return typed(ctypes.CDLL(str(model_library(model, live, options))))
+    return declare_functions(ctypes.CDLL(str(model_library(model, live, options))))
 
 
-def typed(library: Any) -> Any:
+def declare_functions(library: Any) -> Any:
     """Return a library that has a model as a table with the signatures of its functions; see :func:`load_model`."""
     library.model_library.restype = ctypes.c_void_p
     library.model_start.argtypes = [ctypes.c_void_p] * 3

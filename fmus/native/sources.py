@@ -5,14 +5,14 @@ from functools import lru_cache
 from pathlib import Path
 
 from fmus import compiler
+from fmus.cache_paths import CACHE
 from fmus.compiler import Translation, translate
 from fmus.compiler.slicing import Slice
-from fmus.locks import kept_file
+from fmus.locks import cache_file
 from fmus.native.compilers import FLAGS
-from fmus.native.kept import C_FILES
+from fmus.native.library_cache import C_FILES
 from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.tables import longest_name, runs_file, variables_file
-from fmus.places import CACHE
 from modelkit.model import Model
 
 CORE = ("core.h", "core.c", "state.c")
@@ -52,7 +52,7 @@ PREFIX = {
 
 
 @lru_cache
-def translated(model: Model, live: Slice | None = None) -> Translation:
+def translate_model(model: Model, live: Slice | None = None) -> Translation:
     """Return the C of ``model``, or of the slice ``live`` of it; ``TypeError`` if the translator refuses it.
 
     That of this project's own models is kept: they are made of their package and modelkit alone.
@@ -66,7 +66,7 @@ def translated(model: Model, live: Slice | None = None) -> Translation:
     key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
     name = model.name if live is None else f"{model.name}_slice"
     made = lambda: json.dumps(translate(model, live)._asdict()).encode()  # noqa: E731
-    path = kept_file(CACHE, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
+    path = cache_file(CACHE, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
     return Translation(**json.loads(path.read_bytes()))
 
 
@@ -83,7 +83,7 @@ def unit_name(model: Model, fmi: int) -> str:
 
 def fmu_sources(model: Model, token: str, fmi: int = 2) -> dict[str, str]:
     """Return file name -> text; ``token`` is what the FMU answers to. Raises ``TypeError`` if the model is refused."""
-    code = translated(model)
+    code = translate_model(model)
     files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in (*CORE, *FACES[fmi])}
     files |= {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
     files |= {f"{model.name}_variables.h": variables_file(model, fmi), f"{model.name}_runs.h": runs_file(model)}

@@ -9,13 +9,13 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from fmus.locks import kept_file
+from fmus.cache_paths import CACHE, LIBRARIES
+from fmus.locks import cache_file
 from fmus.native.compilers import find_compiler
-from fmus.native.kept import C_FILES, key_of, own_files, told
+from fmus.native.coverage_probes import DECLARED, instrument
+from fmus.native.library_cache import C_FILES, fingerprints, key_of, own_files
 from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.platforms import WEB, CompileTarget
-from fmus.native.probes import DECLARED, probed
-from fmus.places import CACHE, LIBRARIES
 from modelkit.connections import connections, part_of
 from modelkit.model import Chart, Model
 
@@ -64,15 +64,19 @@ def live_library(
     def files() -> dict[str, str]:
         return {**live_files(models), **further}
 
-    def made() -> bytes:
+    def make() -> bytes:
         units = sorted(file for file in files() if file.endswith("_unit.c"))
-        return compiler.linked(files(), units, name, target).content
+        return compiler.link(files(), units, name, target).content
 
     packages = [Path(str(package.__file__)).parent for model in models.values() for package in model.sources()]
-    words = [compiler.recipe(target), *told(further), *(word for model in models.values() for word in words_of(model))]
+    words = [
+        compiler.recipe(target),
+        *fingerprints(further),
+        *(word for model in models.values() for word in words_of(model)),
+    ]
     sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
-    of_c = kept_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), CACHED_MODULES)
-    return kept_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, made)
+    of_c = cache_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), CACHED_MODULES)
+    return cache_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, make)
 
 
 def live_files(models: Mapping[str, Model]) -> dict[str, str]:
@@ -83,7 +87,7 @@ def live_files(models: Mapping[str, Model]) -> dict[str, str]:
     charts = 0
     for model in models.values():
         files |= model_files(model)
-        files[f"{model.name}.c"] = probed(files[f"{model.name}.c"], model.all_charts(), charts)
+        files[f"{model.name}.c"] = instrument(files[f"{model.name}.c"], model.all_charts(), charts)
         files[f"{model.name}_unit.c"] = MODEL_UNIT.format(declared=DECLARED, name=model.name, unit=model_unit(model))
         charts += len(model.all_charts())
     names = [f"{model.name}_library" for model in models.values()]

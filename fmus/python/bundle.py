@@ -74,7 +74,7 @@ def bundle(model: Model) -> Bundle:
         hash="{hash}",
         package=name,
         minimum=MIN_PYTHON,
-        **_named(model),
+        **_model_names(model),
     )
     digest = content_hash({**originals, "script": script.encode()})
     root, module = f"fmu_{digest[:16]}", f"slave_{digest[:16]}"
@@ -134,13 +134,13 @@ def _check_import(module: str, where: str, tops: set[str]) -> None:
         )
 
 
-def _named(model: Model) -> dict[str, str]:
+def _model_names(model: Model) -> dict[str, str]:
     """Return the name under which the model's package offers it, and how it is made from that."""
     for name in dict.fromkeys((*vars(model.package), *getattr(model.package, "__all__", ()))):  # also what comes late
         value = getattr(model.package, name)
-        if isinstance(value, Model) and value == model.started({}):
+        if isinstance(value, Model) and value == model.with_start_values({}):
             starts = [item for item in model.view.starts if model.shows(item[0])]
-            return {"attribute": name, "model": f"{name}.started(dict({starts!r}))" if starts else name}
+            return {"attribute": name, "model": f"{name}.with_start_values(dict({starts!r}))" if starts else name}
     raise ValueError(f"{model.package.__name__}: it must hold the Model of {model.name}")
 
 

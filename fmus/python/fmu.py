@@ -4,7 +4,7 @@ from pathlib import Path
 
 from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
 from fmus.contents.description import ABILITIES, model_description, project_version
-from fmus.contents.extras import documentation, reference_result
+from fmus.contents.fmu_documentation import documentation, reference_result
 from fmus.python.bundle import bundle, runtime_folder, runtime_licence, runtime_version
 from modelkit.model import Model
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import controller_fmu
 from fmus.systems.system import identifier
-from modelkit.assembly import assembled
+from modelkit.assembly import assemble
 from modelkit.model import Model
 
 
@@ -23,4 +23,4 @@ def parking_system(scenario: str, title: str, parts: Mapping[str, Model], step_n
 
     ``opened`` are inputs as ``controller.gear`` that are left to others.
     """
-    return assembled(identifier(scenario), title, sys.modules[__name__], parts, step_ns, opened)
+    return assemble(identifier(scenario), title, sys.modules[__name__], parts, step_ns, opened)

@@ -108,7 +108,7 @@ class _Reader:
         self._ignored: list[str] = []
 
     def system(self) -> SspSystem:
-        root = _parsed(_member(self._archive, STRUCTURE, MOST_XML))
+        root = _parse(_member(self._archive, STRUCTURE, MOST_XML))
         top = _child(root, "System")
         if top is None:
             raise SspError("there is no system in it")
@@ -122,7 +122,7 @@ class _Reader:
             raise SspError(f"startTime {start} s is not supported: runs begin at 0 s")
         steps = [item.get("baseStepSize") or item.get("stepSize") for item in root.iter() if _kind(item) in STEPS]
         connections = list(self._connections())
-        units = self._undeclared_units()
+        units = self._connector_units()
         parameters, inputs = self._values_of_components(units)
         return SspSystem(
             top.get("name") or root.get("name") or "system",
@@ -211,7 +211,7 @@ class _Reader:
         if not source.endswith(".fmu") or "://" in source or "xml" in kind:
             raise SspError(f"{path}: {source or 'it'} is no FMU in this file")
         self._components[path] = source
-        self._names[path] = _unused(path, set(self._names.values()))
+        self._names[path] = _free_name(path, set(self._names.values()))
         self._connectors(element, path)
         self._bindings(element, path, False)
 
@@ -258,7 +258,7 @@ class _Reader:
         return found
 
     def _file(self, name: str) -> Element:
-        return _parsed(_member(self._archive, name, MOST_XML))
+        return _parse(_member(self._archive, name, MOST_XML))
 
     def _connections(self) -> Iterator[SspConnection]:
         """Yield what feeds each connector of a component, followed back through the borders of systems."""
@@ -283,7 +283,7 @@ class _Reader:
             edge = _Edge(before.source, before.factor * edge.factor, offset, values, converts)
         return edge
 
-    def _undeclared_units(self) -> dict[str, dict[str, str]]:
+    def _connector_units(self) -> dict[str, dict[str, str]]:
         """Return the units that connectors say of variables of which their FMUs say none."""
         found: dict[str, dict[str, str]] = {}
         for target in self._feeds:
@@ -401,7 +401,7 @@ def _member(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     return archive.read(entry)
 
 
-def _parsed(data: bytes) -> Element:
+def _parse(data: bytes) -> Element:
     """Return the root of an XML file. Raises ``ParseError``, or ``SspError`` if its encoding is unknown."""
     try:
         return ElementTree.fromstring(data)
@@ -409,7 +409,7 @@ def _parsed(data: bytes) -> Element:
         raise SspError(f"cannot be read: {error}") from None
 
 
-def _unused(path: str, used: set[str]) -> str:
+def _free_name(path: str, used: set[str]) -> str:
     """Return the path of a component as a name that none has yet."""
     plain = re.sub(r"\W", "_", path, flags=re.ASCII)
     name = plain = f"_{plain}" if plain[:1].isdigit() or not plain else plain

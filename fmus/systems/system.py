@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fmus.contents.variables import FmiVariable, shown_variables
+from fmus.contents.variables import FmiVariable, visible_variables
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -26,7 +26,7 @@ class FmuPart(NamedTuple):
 
     def of(self, causality: str) -> list[FmiVariable]:
         """Return the variables of this causality."""
-        return [variable for variable in shown_variables(self.model) if variable.causality == causality]
+        return [variable for variable in visible_variables(self.model) if variable.causality == causality]
 
     def settings(self) -> list[tuple[FmiVariable, Any]]:
         """Return (parameter, start value) of those that the scenario sets."""

@@ -71,7 +71,7 @@ def _parking_pair(arguments: argparse.Namespace) -> list["Built"]:
 
 def _systems(arguments: argparse.Namespace, kinds: list[str]) -> list["Built"]:
     from controller_fmu import APART, SYSTEM_MODELS
-    from fmus.places import DIST
+    from fmus.cache_paths import DIST
 
     known = {system.name.lower(): model for system, model in {**SYSTEM_MODELS, **APART}.items()}
     asked = [name.lower() for item in arguments.system for name in item.split(",")]

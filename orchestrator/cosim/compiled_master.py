@@ -115,7 +115,7 @@ class _Plan:
     """
 
     def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
-        from fmus.native.kept import master_library
+        from fmus.native.library_cache import master_library
 
         self._call = ctypes.CDLL(str(master_library())).master_run
         self._call.restype = ctypes.c_int64

@@ -27,7 +27,7 @@ TAKES = {"python": "", "native": " (some seconds, once for each change of the mo
 
 def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:
     """Return slave name -> up-to-date FMU of ``kind``."""
-    from fmus.places import DIST
+    from fmus.cache_paths import DIST
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
     before = _stamp(DIST / kind)
@@ -48,8 +48,8 @@ def fmu_beside(path: Path, model: Model) -> Path:
 
 def build(kind: str, cc: str | None = None) -> list["Built"]:
     """Build the FMUs of ``kind`` where runs look for them."""
-    from fmus.native.kept import master_library
-    from fmus.places import DIST
+    from fmus.cache_paths import DIST
+    from fmus.native.library_cache import master_library
 
     with one_at_a_time(DIST / "build"):
         if kind == "native":

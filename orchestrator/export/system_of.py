@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from fmus.contents.variables import shown_variables
+from fmus.contents.variables import visible_variables
 from fmus.systems.parking import of_one_system, parking_system
 from fmus.systems.system import FmuPart, FmuSystem
 from modelkit.model import Model
@@ -28,7 +28,7 @@ def parts_of(scenario: Scenario) -> dict[str, Model]:
         raise BadInput("faults live in apa's own master; leave them out to export", file=scenario.file, key="faults")
     given = {name: scenario.given(name) for name in MODELS}
     models = models_for(scenario.controller)
-    return {name: of_one_system(model, given[name]).started(given[name]) for name, model in models.items()}
+    return {name: of_one_system(model, given[name]).with_start_values(given[name]) for name, model in models.items()}
 
 
 def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[str] = ()) -> FmuSystem:
@@ -53,11 +53,11 @@ def one_model(
     others, beside those that no part feeds.
     """
     parts = parts_of(scenario)
-    inside = [(name, item) for name, part in parts.items() for item in shown_variables(part)]
+    inside = [(name, item) for name, part in parts.items() for item in visible_variables(part)]
     known = [f"{name}.{item.name}" for name, item in inside if item.causality == "input"]
     opened = matching(known, inputs)
     model = parking_system(scenario.name, scenario.title or scenario.name, parts, scenario.step_ns, opened)
-    shown = shown_variables(model)
+    shown = visible_variables(model)
     hidden = set(model.view.hidden)
     for causality, patterns in (("parameter", parameters), ("output", outputs)):
         names = [item.name for item in shown if item.causality == causality]

@@ -8,9 +8,9 @@ import sys
 import zipfile
 from pathlib import Path, PurePosixPath
 
+from fmus.cache_paths import DIST
 from fmus.contents.archive import DATE
 from fmus.files import whole
-from fmus.places import DIST
 from orchestrator.text.errors import BadInput
 
 BYTES_PER_GIB = 1 << 30

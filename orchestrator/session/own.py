@@ -23,7 +23,7 @@ def is_model(text: str) -> bool:
 
 def own_fmu(text: str) -> Path:
     """Return the FMU of the model that ``text`` names, native where that can be built. Raises ``BadInput``."""
-    from fmus.places import DIST
+    from fmus.cache_paths import DIST
 
     try:
         with READING:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compiled_rows, used_signals
+from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compile_rows, signals_to_read
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
 from modelkit.model import Model
@@ -85,7 +85,7 @@ def explain(job: Job, chunk: Chunk) -> str:
     scenario = Scenario(**job.scenario)
     models, kept = dict(scenario.models), [_recorded_signal(item) for item in job.measures]
     choices = choices_of(scenario, arrays(job, chunk)[0])
-    return explanation(models, study_slices(models, used_signals(_ending(scenario), kept), dict(choices)))
+    return explanation(models, study_slices(models, signals_to_read(_ending(scenario), kept), dict(choices)))
 
 
 @lru_cache
@@ -97,12 +97,12 @@ def _compile_rows(
     ending: Ending,
 ) -> Rows:
     whole, kept = dict(models), [_recorded_signal(item) for item in measures]
-    complete = compiled_rows(whole, ending, kept, faults)
+    complete = compile_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
-    slices = study_slices(whole, used_signals(ending, kept), dict(choices))
+    slices = study_slices(whole, signals_to_read(ending, kept), dict(choices))
     code = StudyCode(slices, find_compiler().options_for_this_machine())
-    return StudyRows(complete, compiled_rows(whole, ending, kept, faults, code))
+    return StudyRows(complete, compile_rows(whole, ending, kept, faults, code))
 
 
 def _ending(scenario: Scenario) -> Ending:

@@ -7,7 +7,7 @@ import numpy as np
 
 from fmus.compiled_batch import Rows
 from fmus.compiler.slicing import Slice
-from fmus.study_slices import omitted_outputs
+from fmus.study_slices import outputs_left_out
 from modelkit.model import Model
 from modelkit.variables import variables
 from orchestrator.cosim.slave import Array
@@ -62,7 +62,7 @@ class StudyRows:
 def explanation(models: Mapping[str, Model], slices: Mapping[str, Slice]) -> str:
     """Return what the code of a study omits, a line for each model."""
     lines = []
-    for name, omitted in omitted_outputs(models, slices).items():
+    for name, omitted in outputs_left_out(models, slices).items():
         count = len(variables(models[name].outputs))
         groups = dict.fromkeys(item.partition("[")[0] for item in omitted)
         lines.append(f"{name}: {len(omitted)} of {count} outputs are not computed: {', '.join(groups) or '-'}")

@@ -8,7 +8,7 @@ from enum import IntEnum
 from typing import Any
 
 from fmus.compiler import members
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Cells, Struct, fields_of
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Cells, Struct, fields_of
 from fmus.compiler.target.names import member_name
 from fmus.native.compilers import FLAGS, find_compiler
 

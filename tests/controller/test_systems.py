@@ -9,7 +9,7 @@ from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS, VALET
 from controller_fmu.common.phases import CommonPhase
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerInput, ControllerParams, System
-from fmus.contents.variables import shown_variables
+from fmus.contents.variables import visible_variables
 from modelkit.car import Car, CarSteering
 from modelkit.vocabulary import Prompt
 
@@ -70,7 +70,7 @@ def test_samples_fall_on_whole_periods_whatever_the_step(steps: Any) -> None:
 
 @pytest.mark.parametrize("model", [MODEL, VALET, *SYSTEM_MODELS.values()], ids=lambda model: model.name)
 def test_an_fmu_offers_the_systems_alone_that_act_in_it(model: Any) -> None:
-    offered = [item.signal.states for item in shown_variables(model) if item.name == "system"]
+    offered = [item.signal.states for item in visible_variables(model) if item.name == "system"]
     assert len(offered) == (model is MODEL)
     for states in offered:
         assert states is not None

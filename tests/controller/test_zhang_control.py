@@ -5,7 +5,7 @@ import math
 import pytest
 
 from controller_fmu.interface import ParkingInput, Reason
-from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, prediction, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, prediction, steer, turn_wheels
 from controller_fmu.zhang2022.params import MpcParams, PidParams, ZhangSystemParams
 from controller_fmu.zhang2022.path import nearest, plan
 from controller_fmu.zhang2022.phases import ZhangPhase
@@ -56,7 +56,7 @@ def test_fall_back_keeps_the_last_rate_within_its_limit() -> None:
 def test_turned_stays_within_the_lock() -> None:
     steering = FrontWheels(0.5, 0.5, 0, 0)
     for _ in range(100):
-        steering = turned(steering, CAR, 0.01)
+        steering = turn_wheels(steering, CAR, 0.01)
     assert steering.angle == CAR.angle_limit
 
 

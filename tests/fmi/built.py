@@ -4,10 +4,10 @@ import shutil
 from functools import cache
 from pathlib import Path
 
+from fmus.cache_paths import DIST
 from fmus.locks import one_at_a_time
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
-from fmus.places import DIST
 from modelkit.model import Model
 from orchestrator.cosim.fmu_files import sources_hash
 

@@ -6,10 +6,10 @@ import pytest
 import store_model
 import toy_model
 
-from fmus.contents.extras import in_python
-from fmus.contents.variables import shown_variables
+from fmus.contents.fmu_documentation import in_python
+from fmus.contents.variables import visible_variables
 from fmus.native.libraries import in_c
-from modelkit.assembly import assembled
+from modelkit.assembly import assemble
 
 STEPS = [3_000_000, 7_000_000, 17_000_000, 50_000_000] * 5
 HERE = sys.modules[__name__]
@@ -17,8 +17,8 @@ HERE = sys.modules[__name__]
 
 def test_models_that_do_not_feed_each_other_and_one_with_work_arrays() -> None:
     parts = {"a": toy_model.MODEL, "b": store_model.MODEL}
-    model = assembled("Both", "two", HERE, parts, 10_000_000)
-    ports = {item.name for item in shown_variables(model) if item.causality == "input"}
+    model = assemble("Both", "two", HERE, parts, 10_000_000)
+    ports = {item.name for item in visible_variables(model) if item.causality == "input"}
     assert ports > {"a.brake", "b.u"}
     rows = list(in_c(model, STEPS))
     assert rows == [[float(value) for value in row] for row in in_python(model, STEPS)]
@@ -28,14 +28,14 @@ def test_models_that_do_not_feed_each_other_and_one_with_work_arrays() -> None:
 def test_two_models_with_work_arrays_are_refused() -> None:
     parts = {"a": store_model.MODEL, "b": store_model.MODEL._replace(name="Other")}
     with pytest.raises(ValueError, match="Both: only one of the models may have a store"):
-        assembled("Both", "two", HERE, parts, 10_000_000)
+        assemble("Both", "two", HERE, parts, 10_000_000)
 
 
 def test_start_values_of_a_model_are_checked() -> None:
-    model = toy_model.MODEL.started({"mass": 3, "noisy": False})
+    model = toy_model.MODEL.with_start_values({"mass": 3, "noisy": False})
     assert (model.first_params().mass, model.first_params().noisy) == (3.0, False)
-    assert model.started({}) == toy_model.MODEL
+    assert model.with_start_values({}) == toy_model.MODEL
     with pytest.raises(KeyError, match="maas"):
-        toy_model.MODEL.started({"maas": 3.0})
+        toy_model.MODEL.with_start_values({"maas": 3.0})
     with pytest.raises(ValueError, match="mass = -1"):
-        toy_model.MODEL.started({"mass": -1.0})
+        toy_model.MODEL.with_start_values({"mass": -1.0})

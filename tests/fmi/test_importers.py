@@ -107,7 +107,7 @@ def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model: Any)
     shown = {node.get("name"): node for node in root.find("ModelVariables")}
     for item in fmi_variables(model):
         mode = item.signal.states
-        if mode is None or not item.shown:
+        if mode is None or not item.is_exposed:
             continue
         number = shown[item.name].find("Integer")
         kind = types[number.get("declaredType")]

@@ -13,7 +13,7 @@ import toy_model
 from fmpy import read_model_description
 
 from fmus.native.fmu import build
-from fmus.native.kept import C_FILES
+from fmus.native.library_cache import C_FILES
 from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS

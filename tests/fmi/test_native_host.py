@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from fmus.native.kept import C_FILES
+from fmus.native.library_cache import C_FILES
 from fmus.native.platforms import LINUX
 from fmus.native.sources import fmu_sources, unit_name
 from tests.fmi.elf import dynamic

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from fmus import places
+from fmus import cache_paths
 
 ROOT = Path(__file__).parents[2]
-SHOW = "from fmus.places import DIST; print(DIST)"
+SHOW = "from fmus.cache_paths import DIST; print(DIST)"
 
 
 def shown(folder: Any, **environment: Any) -> Any:
@@ -28,7 +28,7 @@ def installed(tmp_path: Path) -> Any:
     """A package that is no checkout."""
     folder = tmp_path / "site-packages"
     (folder / "fmus").mkdir(parents=True)
-    for name in ("__init__.py", "places.py"):
+    for name in ("__init__.py", "cache_paths.py"):
         (folder / "fmus" / name).write_bytes((ROOT / "fmus" / name).read_bytes())
     return folder
 
@@ -50,34 +50,34 @@ def test_a_variable_names_another_place(installed: Any, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
 def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(places, "__file__", str(tmp_path / "fmus" / "places.py"))
-    monkeypatch.setattr(places, "user_cache_path", lambda *_, **__: Path("/proc/nothing"))
+    monkeypatch.setattr(cache_paths, "__file__", str(tmp_path / "fmus" / "cache_paths.py"))
+    monkeypatch.setattr(cache_paths, "user_cache_path", lambda *_, **__: Path("/proc/nothing"))
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
-    monkeypatch.setattr(places, "can_write", lambda path: str(path).startswith(str(tmp_path / "apa")))
+    monkeypatch.setattr(cache_paths, "can_write", lambda path: str(path).startswith(str(tmp_path / "apa")))
     monkeypatch.delenv("APA_DIST", raising=False)
-    folder = places.chosen_folder()
+    folder = cache_paths.build_folder()
     assert folder == tmp_path / f"apa-cosim-{os.getuid()}"
     assert folder.stat().st_mode & 0o777 == 0o700
     folder.chmod(0o777)
     with pytest.raises(RuntimeError, match="belongs to somebody else; name a folder with APA_DIST"):
-        places.chosen_folder()
+        cache_paths.build_folder()
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
 def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid or 1)
     tmp_path.chmod(0o755)
-    assert places.is_own(tmp_path)
+    assert cache_paths.is_own(tmp_path)
     tmp_path.chmod(0o777)
-    assert not places.is_own(tmp_path)
-    assert places.is_own(tmp_path / "not there")
+    assert not cache_paths.is_own(tmp_path)
+    assert cache_paths.is_own(tmp_path / "not there")
 
 
 def test_can_write_asks_the_nearest_folder_that_exists(tmp_path: Path) -> None:
-    assert places.can_write(tmp_path / "a" / "b")
-    assert not places.can_write(Path("/proc/1/a"))
+    assert cache_paths.can_write(tmp_path / "a" / "b")
+    assert not cache_paths.can_write(Path("/proc/1/a"))
     (tmp_path / "file").write_text("")
-    assert not places.can_write(tmp_path / "file" / "below")
+    assert not cache_paths.can_write(tmp_path / "file" / "below")
 
 
 BUILD = """

@@ -20,7 +20,7 @@ from controller_fmu import MODEL as CONTROLLER
 from fmus.build import build_all
 from fmus.contents.archive import archive_bytes, archive_guid, content_guid
 from fmus.contents.description import model_description
-from fmus.contents.extras import terminals
+from fmus.contents.fmu_documentation import terminals
 from fmus.contents.units import unit
 from fmus.contents.variables import fmi_variables
 from fmus.python.fmu import build

@@ -19,8 +19,8 @@ import pytest
 import toy_model
 
 from fmus.native.compilers import can_compile
-from fmus.native.kept import C_FILES
 from fmus.native.libraries import python_front
+from fmus.native.library_cache import C_FILES
 from fmus.python.fmu import BEHIND, build
 from tests.fmi.raw import DISCARD, ERROR, OK
 

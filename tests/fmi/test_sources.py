@@ -14,7 +14,7 @@ import toy_model
 
 from controller_fmu import VALET
 from fmus.compiler import Translation
-from fmus.contents.variables import fmi_variables, shown_variables
+from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.native import fmu as native_fmu
 from fmus.native import sources, tables
 from fmus.native.compilers import FLAGS, find_compiler
@@ -78,11 +78,11 @@ def given(model: Any) -> Any:
     drives = {"guo2015-case4": SHIPPED, "valet-parallel": {"controller": VALET}}
     found = [(drive, part) for drive, parts in drives.items() for part, one in parts.items() if one is model]
     if not found:
-        return {}, random_inputs(shown_variables(model), 5, 400)
+        return {}, random_inputs(visible_variables(model), 5, 400)
     ((drive, part),) = found
     scenario = load_scenario(drive, ["stop_time=4"])
     signals = run_scenario(scenario, fmu_files("native"), kind="native").recording.signals
-    names = {item.name: item.kind for item in shown_variables(model) if item.causality == "input"}
+    names = {item.name: item.kind for item in visible_variables(model) if item.causality == "input"}
     inputs = [{name: kind(signals[f"{part}.{name}"][k]) for name, kind in names.items()} for k in range(400)]
     values = with_values(model.params, dict(getattr(scenario, part)))
     return {item.name: item.start for item in variables(model.params, values) if model.shows(item.name)}, inputs
@@ -199,7 +199,7 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(sources, "translate", translate)
     monkeypatch.setattr(sources, "CACHE", tmp_path)
-    translated = sources.translated.__wrapped__
+    translated = sources.translate_model.__wrapped__
     assert translated(VEHICLE) == translated(VEHICLE) == ("Vehicle", "header 1", "source")
     other = VEHICLE._replace(name="Other")
     other_start: Any = VEHICLE.step

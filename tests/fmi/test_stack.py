@@ -48,5 +48,5 @@ def test_the_page_of_an_fmu_states_its_largest_frame(request: pytest.FixtureRequ
 def test_two_compilers_say_how_large_a_frame_is() -> None:
     text = "int f(int n) { volatile char room[5000]; room[n] = 1; return room[0]; }"
     for name in ("zig", "gcc"):
-        made = find_compiler(name).linked({"a.c": text}, ["a.c"], "a.so", LINUX)
+        made = find_compiler(name).link({"a.c": text}, ["a.c"], "a.so", LINUX)
         assert 4800 <= made.largest_frame <= 5200, name  # clang leaves out the red zone of 128 bytes

@@ -13,10 +13,10 @@ from fmpy.validation import validate_fmu
 from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS
 from controller_fmu.common.phases import is_over
 from controller_fmu.registry import System
-from fmus.contents.arrays import fmi_arrays, shown_arrays
+from fmus.contents.arrays import fmi_arrays, visible_arrays
 from fmus.contents.description import model_description
 from fmus.contents.description3 import model_description3
-from fmus.contents.variables import fmi_variables, shown_variables
+from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.python import fmu as python_fmu
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cli import main
@@ -157,13 +157,13 @@ def test_its_description_has_only_those_and_the_system_is_no_parameter(system: A
     root: Any = ElementTree.fromstring(model_description(model, guid="", generation_tool="", flags={}))
     assert root.find("CoSimulation").get("modelIdentifier") == model.name
     names = [node.get("name") for node in root.find("ModelVariables")]
-    assert names == [item.name for item in shown_variables(model)]
+    assert names == [item.name for item in visible_variables(model)]
     expected = shown(model, MODEL.params) | shown(model, MODEL.inputs) | shown(model, MODEL.outputs) | {"time"}
     assert set(names) == expected
     assert "system" not in names
     assert len(names) < 0.55 * len(fmi_variables(MODEL))
     start = next(item for item in fmi_variables(model) if item.name == "system")
-    assert (start.start, start.shown) == (int(system), False)
+    assert (start.start, start.is_exposed) == (int(system), False)
 
 
 @each
@@ -171,15 +171,15 @@ def test_as_fmi_3_it_has_the_same(system: Any) -> None:
     model = SYSTEM_MODELS[system]
     root: Any = ElementTree.fromstring(model_description3(model, token="", generation_tool="", flags={}))
     names = [node.get("name") for node in root.find("ModelVariables")]
-    assert names == [item.name for item in shown_arrays(model)]
+    assert names == [item.name for item in visible_arrays(model)]
     assert len(names) < len(fmi_arrays(model))
-    scalars = {item.name for array in shown_arrays(model) for item in array.elements}
-    assert scalars == {item.name for item in shown_variables(model)}
+    scalars = {item.name for array in visible_arrays(model) for item in array.elements}
+    assert scalars == {item.name for item in visible_variables(model)}
 
 
 def test_value_references_are_those_of_the_whole_controller() -> None:
     whole = {item.name: item.vr for item in fmi_variables(MODEL)}
-    assert {item.name: item.vr for item in shown_variables(APA)}.items() <= whole.items()
+    assert {item.name: item.vr for item in visible_variables(APA)}.items() <= whole.items()
 
 
 @pytest.fixture(scope="module")
@@ -222,12 +222,12 @@ def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa: Any) ->
 def twin(path: Any, system: Any) -> None:
     model = SYSTEM_MODELS[system]
     params = with_values(MODEL.params, {"system": int(system), "car.steering.ratio": 17.0})
-    inputs = random_inputs(shown_variables(model), 3, 60)
+    inputs = random_inputs(visible_variables(model), 3, 60)
     start = {item.name: item.start for item in variables(MODEL.inputs)}
     make, names = constructor(MODEL.inputs), [item.name for item in variables(MODEL.outputs)]
     state, outputs = MODEL.initialize(params)
     with Host(path) as host:
-        told = [item.name for item in fmi_variables(model) if item.shown and item.initial == "calculated"]
+        told = [item.name for item in fmi_variables(model) if item.is_exposed and item.initial == "calculated"]
         host.initialize(**{"car.steering.ratio": 17.0})
         for number, values in enumerate(inputs):
             expected = dict(zip(names, flatten(outputs), strict=True))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-import fmus.places
+import fmus.cache_paths
 from orchestrator.session.foreign import load_fitting
 from orchestrator.session.session import NOBODY, Messages, make_slaves
 from orchestrator.system.assemble import assemble
@@ -198,7 +198,7 @@ def _bindings(settings: list[Setting]) -> str:
 
 def fuzz(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[str], str]]:
     """Read one system after the other without end; yield what it is and what was wrong, empty if nothing."""
-    before, fmus.places.DIST = fmus.places.DIST, folder / "dist"
+    before, fmus.cache_paths.DIST = fmus.cache_paths.DIST, folder / "dist"
     try:
         while True:
             shutil.rmtree(folder / "dist", ignore_errors=True)
@@ -208,7 +208,7 @@ def fuzz(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[st
             _write(folder, system, _scrambled(text, draw) if is_damaged else text)
             yield ["ssp", "damaged" if is_damaged else str(system)], _mistake(folder / "odd.ssp", system, is_damaged)
     finally:
-        fmus.places.DIST = before
+        fmus.cache_paths.DIST = before
 
 
 def _write(folder: Path, system: System, text: str) -> None:

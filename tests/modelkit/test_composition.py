@@ -5,7 +5,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 import pytest
 
-from modelkit.composition import groups_of, merged
+from modelkit.composition import groups_of, merge_records
 from modelkit.signal import Role, Signal, Subset
 from modelkit.states import CannotComposeError, parts_of
 from modelkit.variables import variables
@@ -46,14 +46,14 @@ class Swimmer(NamedTuple):
 
 
 def test_the_whole_has_each_field_once_in_the_order_of_its_parts() -> None:
-    made: Any = merged("Both", __name__, "Both.", (Walker, Swimmer))
+    made: Any = merge_records("Both", __name__, "Both.", (Walker, Swimmer))
     assert made._fields == ("speed", "depth", "phase", "car", "breath")
     assert made() == (1.0, 0.0, 0, Car(), 9.0)
     assert (made.__name__, made.__module__, made.__doc__) == ("Both", __name__, "Both.")
 
 
 def test_the_whole_has_all_of_what_a_part_has_some_of() -> None:
-    made = merged("Both", __name__, "", (Walker, Swimmer))
+    made = merge_records("Both", __name__, "", (Walker, Swimmer))
     found = {item.name: item for item in variables(made)}
     assert {"car.length", "car.width"} <= set(found)
     assert found["car.width"].roles == {Role.TUNABLE}
@@ -62,7 +62,9 @@ def test_the_whole_has_all_of_what_a_part_has_some_of() -> None:
 
 
 def test_a_mode_has_the_states_of_all() -> None:
-    phase = next(item for item in variables(merged("Both", __name__, "", (Walker, Swimmer))) if item.name == "phase")
+    phase = next(
+        item for item in variables(merge_records("Both", __name__, "", (Walker, Swimmer))) if item.name == "phase"
+    )
     assert phase.signal.states is not None
     assert phase.signal.states.__name__ == "Phase"
     assert {item.name: int(item) for item in phase.signal.states} == {"STAND": 0, "GO": 1, "DIVE": 2}
@@ -78,13 +80,13 @@ def test_what_differs_is_refused_with_both_places() -> None:
 
     here = "tests.modelkit.test_composition"
     with pytest.raises(CannotComposeError) as refusal:
-        merged("Both", __name__, "", (Walker, Faster))
+        merge_records("Both", __name__, "", (Walker, Faster))
     assert str(refusal.value) == (
         f"Both: {here}.Faster.speed and {here}.Walker.speed differ (default 2.0, 1.0); "
         "expected them alike, or another name"
     )
     with pytest.raises(CannotComposeError, match="differ \\(type, unit or meaning\\)"):
-        merged("Both", __name__, "", (Walker, InKilometres))
+        merge_records("Both", __name__, "", (Walker, InKilometres))
 
 
 def test_a_part_of_what_is_not_there_is_refused() -> None:
@@ -103,4 +105,4 @@ def test_a_field_without_a_default_is_refused() -> None:
         speed: float
 
     with pytest.raises(CannotComposeError, match=r"Open.speed has no default"):
-        merged("Both", __name__, "", (Open,))
+        merge_records("Both", __name__, "", (Open,))

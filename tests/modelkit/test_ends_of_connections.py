@@ -6,8 +6,8 @@ import pytest
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu import SYSTEM_MODELS, VALET
-from fmus.contents.arrays import shown_arrays
-from fmus.contents.variables import limits, shown_variables
+from fmus.contents.arrays import visible_arrays
+from fmus.contents.variables import limits, visible_variables
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -24,8 +24,8 @@ def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:
 
 def ends(model: Model[Any, Any, Any, Any], causality: str, fmi: int) -> dict[str, Any]:
     if fmi == 2:
-        return {v.name: said(v, v.fmi_type) for v in shown_variables(model) if v.causality == causality}
-    chosen = [array for array in shown_arrays(model) if array.first.causality == causality]
+        return {v.name: said(v, v.fmi_type) for v in visible_variables(model) if v.causality == causality}
+    chosen = [array for array in visible_arrays(model) if array.first.causality == causality]
     return {array.name: said(array.first, array.fmi_type, array.shape) for array in chosen}
 
 

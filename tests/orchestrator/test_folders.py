@@ -185,7 +185,7 @@ def test_a_relative_entry_of_path_names_the_interpreter_from_any_folder() -> Non
 
 
 def test_a_library_that_is_damaged_is_made_again(tmp_path: Path) -> None:
-    from fmus.locks import kept_file
+    from fmus.locks import cache_file
 
     made = []
 
@@ -193,9 +193,9 @@ def test_a_library_that_is_damaged_is_made_again(tmp_path: Path) -> None:
         made.append(1)
         return b"library"
 
-    path = kept_file(tmp_path, "x", "1", ".so", make)
-    assert kept_file(tmp_path, "x", "1", ".so", make) == path
+    path = cache_file(tmp_path, "x", "1", ".so", make)
+    assert cache_file(tmp_path, "x", "1", ".so", make) == path
     assert len(made) == 1
     path.write_bytes(b"another")
-    assert kept_file(tmp_path, "x", "1", ".so", make).read_bytes() == b"library"
+    assert cache_file(tmp_path, "x", "1", ".so", make).read_bytes() == b"library"
     assert len(made) == 2

@@ -10,7 +10,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import pytest
 
-from fmus.compiled_batch import Kept, compiled_rows
+from fmus.compiled_batch import Kept, compile_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import scenario_names
@@ -198,7 +198,7 @@ def test_the_time_of_an_instant(bind: Any) -> None:
 
 def test_a_signal_that_does_not_exist() -> None:
     with pytest.raises(KeyError, match=r"vehicle\.sped"):
-        compiled_rows(MODELS, None, [Kept("last", "vehicle.sped")])
+        compile_rows(MODELS, None, [Kept("last", "vehicle.sped")])
 
 
 class Wrong(NamedTuple):
@@ -208,12 +208,12 @@ class Wrong(NamedTuple):
 def test_connected_types_must_agree() -> None:
     models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
     with pytest.raises(TypeError, match=r"prompt: output of controller is float, input of vehicle is int"):
-        compiled_rows(models, None, [Kept("last", "vehicle.speed")])
+        compile_rows(models, None, [Kept("last", "vehicle.speed")])
 
 
 def test_arrays_of_another_shape_are_refused(bind: Any) -> None:
     _, _, job, chunk = bind()
-    rows = compiled_rows(MODELS, None, [Kept("last", "vehicle.speed")])
+    rows = compile_rows(MODELS, None, [Kept("last", "vehicle.speed")])
     parameters, times = arrays(job, chunk)
     none = np.empty((192, 0))
     with pytest.raises(ValueError, match="expected 192 lines of 3 in C order"):

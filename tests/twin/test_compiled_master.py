@@ -142,6 +142,6 @@ def test_without_a_compiler_the_python_loop_does_it(fmus: Any, monkeypatch: pyte
     def absent() -> None:
         raise RuntimeError("no compiler")
 
-    monkeypatch.setattr("fmus.native.kept.master_library", absent)
+    monkeypatch.setattr("fmus.native.library_cache.master_library", absent)
     times, error, _ = drive(CompiledMaster, fmus["native"])
     assert (len(times), error, loops) == (301, "", [])

@@ -13,9 +13,9 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from fmus.contents.dependencies import initial_dependencies
-from fmus.contents.variables import shown_variables
+from fmus.contents.variables import visible_variables
 from fmus.native.platforms import host as this_platform
-from modelkit.assembly import assembled
+from modelkit.assembly import assemble
 from modelkit.variables import flatten, variables, with_values
 from modelkit.vocabulary import Gear
 from orchestrator.cli import main
@@ -48,7 +48,7 @@ ODD = (3_000_000, 7_000_000, 10_000_000, 17_000_000, 1, 22_999_999, 250_000_000)
 def pair(step_ns: Any, controller: Any = MODELS["controller"]) -> Any:
     """Both models with all they have as one, and its library: what every scenario of this step can be played to."""
     parts = MODELS | {"controller": controller}
-    model = assembled("Pair", "vehicle and controller", sys.modules[__name__], parts, step_ns)
+    model = assemble("Pair", "vehicle and controller", sys.modules[__name__], parts, step_ns)
     return model, CLibrary(model)
 
 
@@ -206,7 +206,7 @@ def test_initial_dependencies_are_those_of_the_parts() -> None:
     model = one_model(CASE)
     found, of_vehicle = initial_dependencies(model), initial_dependencies(VEHICLE)
     assert found["vehicle.pose.x"] == [f"vehicle.{name}" for name in of_vehicle["pose.x"]] != []
-    assert found.keys() == {item.name for item in shown_variables(model) if item.initial == "calculated"}
+    assert found.keys() == {item.name for item in visible_variables(model) if item.initial == "calculated"}
 
 
 def test_a_parameter_changes_what_it_changes_in_the_pair(containers: Any) -> None:
@@ -224,7 +224,7 @@ def test_a_parameter_changes_what_it_changes_in_the_pair(containers: Any) -> Non
 def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
     model = one_model(CASE, ["vehicle.driver.*"], ["vehicle.prompt", "controller.driver_takeover"], ["*.pose.*"])
     ports: dict[str, list[str]] = {}
-    for item in shown_variables(model):
+    for item in visible_variables(model):
         ports.setdefault(item.causality, []).append(item.name)
     own = [name for name in ports["input"] if not name.startswith("vehicle.manual.")]
     assert own == ["vehicle.prompt", "controller.driver_takeover"]

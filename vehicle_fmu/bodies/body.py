@@ -56,6 +56,6 @@ def wheel_speed(state: BodyState, body: int, radius: float) -> float:
     return 0.5 * radius * (wheels[2].spin + wheels[3].spin)
 
 
-def displayed_speed(speed: float) -> float:
+def speed_for_display(speed: float) -> float:
     """Return ``speed`` [m/s], zero while the car only rocks on its tyres."""
     return 0.0 if abs(speed) < SHOWN_STANDSTILL_SPEED else speed

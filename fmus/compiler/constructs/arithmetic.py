@@ -7,10 +7,10 @@ from typing import Any
 
 from fmus.compiler.constructs.items import with_item
 from fmus.compiler.slicing import DeadValue
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
-from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, describe
+from fmus.compiler.target.aggregates import elements, repeat_items, tuple_of, zero
 from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
-from fmus.compiler.target.making import elements, repeated, tuple_of, zero
 from fmus.compiler.target.values import (
     BIT_AND,
     BIT_OR,
@@ -102,7 +102,7 @@ def binary(body: FunctionBody, node: ast.BinOp) -> Value:
         return _of_tuples(body, node, left, right)
     for side, value in ((node.left, left), (node.right, right)):
         if value.kind not in (FLOAT, INT, BOOL):
-            raise CannotError(side, f"arithmetic with {described(value.kind)}", "name the field that is meant")
+            raise CannotError(side, f"arithmetic with {describe(value.kind)}", "name the field that is meant")
     if kind in (ast.Pow, ast.MatMult):
         raise CannotError(node, WORDS[kind], "write x * x, math.sqrt(x) or math.exp(y * math.log(x))")
     if FLOAT in (left.kind, right.kind):
@@ -121,13 +121,13 @@ def _of_floats(node: ast.BinOp, left: Value, right: Value) -> Value:
         advice = FLOAT_ADVICE.get(kind, "write int(...) around the operands")
         raise CannotError(node, f"{_sign(node)} of floats", advice)
     sign, level = SIGNS[kind]
-    const = _known(kind, left, right)
+    const = _fold(kind, left, right)
     return Value(FLOAT, f"{within(left, level)} {sign} {within(right, level + 1)}", level, const=const)
 
 
 def _of_ints(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     kind = type(node.op)
-    const = _known(kind, left, right)
+    const = _fold(kind, left, right)
     if kind in (ast.LShift, ast.RShift) and right.const is not UNKNOWN and not 0 <= right.const < 64:
         raise CannotError(node, f"a shift by {right.const} bits", "shift by 0 to 63 bits")
     if kind in (ast.FloorDiv, ast.Mod) and right.const is not UNKNOWN and right.const == 0:
@@ -154,7 +154,7 @@ def _quotient(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) ->
     return Value(FLOAT, f"{body.program.helper('int_quotient')}({left.text}, {right.text})")
 
 
-def _known(kind: type[ast.operator], left: Value, right: Value) -> Any:
+def _fold(kind: type[ast.operator], left: Value, right: Value) -> Any:
     """Return the result if both operands are known and Python has one."""
     if UNKNOWN in (left.const, right.const) or (kind is ast.LShift and right.const > 64):
         return UNKNOWN
@@ -201,11 +201,11 @@ def _of_tuples(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -
             raise CannotError(node, "an empty tuple", "repeat it at least once")
         if count.const > MOST_ITEMS:
             raise CannotError(node, f"a tuple repeated {count.const} times", f"repeat it {MOST_ITEMS} times at most")
-        return repeated(body, elements(body, items), count.const)
+        return repeat_items(body, elements(body, items), count.const)
     if not isinstance(node.op, ast.Add) or not (isinstance(left.kind, Array) and isinstance(right.kind, Array)):
         raise CannotError(node, f"{_sign(node)} of a tuple", "join tuples with +, repeat them with *")
     if left.kind.item != right.kind.item:
-        what = f"{described(left.kind)} joined to {described(right.kind)}"
+        what = f"{describe(left.kind)} joined to {describe(right.kind)}"
         raise CannotError(node, what, "join tuples of one kind of items")
     return tuple_of(body, elements(body, left) + elements(body, right))
 
@@ -215,7 +215,7 @@ def unary(body: FunctionBody, node: ast.UnaryOp) -> Value:
     value = body.scalar(node.operand)
     if isinstance(node.op, ast.Invert):
         if value.kind != INT:
-            raise CannotError(node, f"~ of {described(value.kind)}", "write 'not' for truth values")
+            raise CannotError(node, f"~ of {describe(value.kind)}", "write 'not' for truth values")
         const = UNKNOWN if value.const is UNKNOWN else ~value.const
         return Value(INT, f"~{within(value, UNARY)}", UNARY, narrow=value.narrow, const=const)
     number = as_int(value)

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 from fmus.compiler.constructs.arithmetic import in_64_bits
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Mixed, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Mixed, describe
+from fmus.compiler.target.aggregates import elements
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import elements
 from fmus.compiler.target.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
 
 MATH = {
@@ -43,13 +43,13 @@ def math_call(body: FunctionBody, node: ast.Call, name: str) -> Value:
     values = [as_float(value) for value in scalars(body, node, f"math.{name}", count, count)]
     if name in TESTS:
         return Value(BOOL, f"{name}({values[0].text}) != 0", EQUAL)
-    const = known_result(getattr(math, name), values)
+    const = fold_call(getattr(math, name), values)
     if const is not UNKNOWN and name not in EXACT:
         return literal(const)
     return Value(FLOAT, f"{name}({', '.join(value.text for value in values)})", const=const)
 
 
-def known_result(function: Callable[..., Any], values: list[Value]) -> Any:
+def fold_call(function: Callable[..., Any], values: list[Value]) -> Any:
     """Return the result for known arguments: a C compiler may work it out more exactly than the library would."""
     if any(value.const is UNKNOWN for value in values):
         return UNKNOWN
@@ -63,7 +63,7 @@ def whole(body: FunctionBody, value: Value, c: str, python: Callable[..., Any]) 
     """Return a float made an int by the C function ``c``; used as a float again it need not pass through an int."""
     if value.kind != FLOAT:
         return as_int(value)
-    const = known_result(python, [value])
+    const = fold_call(python, [value])
     text = f"{c}({value.text})"
     given = value.text if c == "trunc" else text
     return Value(INT, f"{body.program.helper('int_of')}({given})", const=const, real=f"({text} + 0.0)")
@@ -95,7 +95,7 @@ def integer(body: FunctionBody, node: ast.Call) -> Value:
     return whole(body, value, "trunc", int)
 
 
-def rounded(body: FunctionBody, node: ast.Call) -> Value:
+def lower_round(body: FunctionBody, node: ast.Call) -> Value:
     """Return round(x): halves go to the even neighbour, as C's rint does."""
     if len(node.args) == 2 or node.keywords:
         raise CannotError(node, "round() to decimals", "write math.floor(x / step + 0.5) * step")
@@ -126,13 +126,13 @@ def length(body: FunctionBody, node: ast.Call) -> Value:
         return literal(value.kind.length)
     if isinstance(value.kind, Mixed):
         return literal(len(value.kind.items))
-    raise CannotError(node, f"len() of {described(value.kind)}", "give it a tuple")
+    raise CannotError(node, f"len() of {describe(value.kind)}", "give it a tuple")
 
 
 def extreme(word: str) -> Callable[[FunctionBody, ast.Call], Value]:
     """Return the translation of min or max."""
 
-    def made(body: FunctionBody, node: ast.Call) -> Value:
+    def lower(body: FunctionBody, node: ast.Call) -> Value:
         if node.keywords:
             raise CannotError(node, f"{word}() with {node.keywords[0].arg}", "compare the items one by one")
         values = [body.value(item) for item in node.args]
@@ -140,7 +140,7 @@ def extreme(word: str) -> Callable[[FunctionBody, ast.Call], Value]:
             values = list(elements(body, values[0]))
         for value in values:
             if value.kind not in (FLOAT, INT, BOOL):
-                raise CannotError(node, f"{word}() of {described(value.kind)}", "give it two or more numbers")
+                raise CannotError(node, f"{word}() of {describe(value.kind)}", "give it two or more numbers")
         if len(values) < 2:
             raise CannotError(node, f"{word}() of {len(values)} values", "give it two or more numbers")
         one_kind(node, f"{word}()", values)
@@ -149,7 +149,7 @@ def extreme(word: str) -> Callable[[FunctionBody, ast.Call], Value]:
             result = _smaller_or_larger(body, word, result, value)
         return result
 
-    return made
+    return lower
 
 
 def one_kind(node: ast.AST, what: str, values: list[Value]) -> None:
@@ -177,7 +177,7 @@ def _smaller_or_larger(body: FunctionBody, word: str, a: Value, b: Value) -> Val
 BUILTINS: dict[Any, Callable[[FunctionBody, ast.Call], Value]] = {
     abs: absolute,
     int: integer,
-    round: rounded,
+    round: lower_round,
     float: floating,
     bool: boolean,
     len: length,

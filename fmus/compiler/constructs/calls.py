@@ -11,15 +11,15 @@ from typing import Any, NamedTuple
 from fmus.compiler.constructs.builtin import BUILTINS, math_call
 from fmus.compiler.constructs.columns import check_place
 from fmus.compiler.constructs.generators import GENERATORS
-from fmus.compiler.constructs.replacing import replaced
+from fmus.compiler.constructs.replacing import lower_replace
 from fmus.compiler.source.advice import CALL_ADVICE
-from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple, whole_of
-from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError
+from fmus.compiler.source.types import Array, Kind, Mixed, Open, Struct, describe, is_named_tuple, whole_of
 from fmus.compiler.target.access import is_at, looks_at_place
+from fmus.compiler.target.aggregates import coerce, spell_out, struct_of
 from fmus.compiler.target.body import EXPRESSIONS, METHODS, FunctionBody
 from fmus.compiler.target.functions import Instance, Parameter, instance_of
 from fmus.compiler.target.in_place import InPlace
-from fmus.compiler.target.making import coerced, struct_of, written_out
 from fmus.compiler.target.signatures import signature
 from fmus.compiler.target.storage import address, hoist, put, text_of
 from fmus.compiler.target.values import Place, Value, place_of
@@ -70,14 +70,14 @@ def invoke(
         elif word in given:
             value = body.value(given[word])
         elif word in known.defaults:
-            value = written_out(body, known.defaults[word], kind)
+            value = spell_out(body, known.defaults[word], kind)
         else:
             raise CannotError(node, f"{name}() without its argument {word}", f"it takes {', '.join(known.kinds)}")
-        values.append(_argument(body, value, kind, given.get(word, node), f"{name}() takes {described(kind)}"))
+        values.append(_argument(body, value, kind, given.get(word, node), f"{name}() takes {describe(kind)}"))
     made = instance_of(body.program, function, tuple(value.kind for value in values), node)
     if made.result is None:
         raise AlreadySaidError
-    return _result(body, made, made.result, [_given(body, made, *pair) for pair in enumerate(values)])
+    return _result(body, made, made.result, [_pass_argument(body, made, *pair) for pair in enumerate(values)])
 
 
 class Given(NamedTuple):
@@ -88,7 +88,7 @@ class Given(NamedTuple):
     text: str
 
 
-def _given(body: FunctionBody, made: Instance, number: int, value: Value) -> Given:
+def _pass_argument(body: FunctionBody, made: Instance, number: int, value: Value) -> Given:
     parameter = made.parameters[number]
     if made.changed is not None and number == made.changed.parameter:
         return Given(parameter, value, place_of(value).text if value.place else "")
@@ -150,8 +150,8 @@ def _argument(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: 
     if isinstance(kind, Open):
         if isinstance(value.kind, Array) and value.kind.item == kind.item:
             return value
-        raise CannotError(node, f"{described(value.kind)} where {why}", f"make it {described(kind)}")
-    return coerced(body, value, kind, node, why)
+        raise CannotError(node, f"{describe(value.kind)} where {why}", f"make it {describe(kind)}")
+    return coerce(body, value, kind, node, why)
 
 
 def _arguments(
@@ -187,10 +187,10 @@ def construct(body: FunctionBody, node: ast.Call, cls: Any) -> Value:
     fields: dict[str, Value] = {}
     for name, wanted in kinds.items():
         if name in given:
-            why = f"{cls.__name__}.{name} is {described(wanted)}"
-            fields[name] = coerced(body, body.value(given[name]), wanted, given[name], why)
+            why = f"{cls.__name__}.{name} is {describe(wanted)}"
+            fields[name] = coerce(body, body.value(given[name]), wanted, given[name], why)
         elif name in cls._field_defaults:
-            fields[name] = written_out(body, cls._field_defaults[name], wanted)
+            fields[name] = spell_out(body, cls._field_defaults[name], wanted)
         else:
             raise CannotError(node, f"{cls.__name__}() without its field {name}", f"it has {', '.join(kinds)}")
     return struct_of(body, kind, fields)
@@ -208,9 +208,9 @@ def _method(body: FunctionBody, node: ast.Call) -> Value:
     value = body.value(node.func.value)
     if not isinstance(value.kind, Struct):
         advice = "write a function of the value, or a loop over the items"
-        raise CannotError(node, f".{word}() of {described(value.kind)}", advice)
+        raise CannotError(node, f".{word}() of {describe(value.kind)}", advice)
     if word == "_replace":
-        return replaced(body, node, value)
+        return lower_replace(body, node, value)
     function = vars(value.kind.cls).get(word)
     if not isinstance(function, FunctionType) or word.startswith("_"):
         what = f"{value.kind.cls.__name__} has no method {word}"

@@ -9,10 +9,10 @@ import ast
 from types import FunctionType
 
 from fmus.compiler.constructs.tuples import COLUMN_RANGES, index_text
-from fmus.compiler.source.kinds import Cells, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import Cells, describe
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import coerced
 from fmus.compiler.target.values import UNARY, Value, as_int, place_of, within
 
 
@@ -22,10 +22,10 @@ def write(body: FunctionBody, target: ast.Subscript, source: ast.expr, node: ast
     if column is None or not isinstance(column.kind, Cells):
         what = f"a change of {ast.unparse(target)}"
         raise CannotError(node, what, "bind a new value: x = x._replace(field=...), or a new tuple")
-    why = f"{ast.unparse(target.value)} is {described(column.kind)}"
-    value = coerced(body, body.value(source), column.kind.item, node, why)
+    why = f"{ast.unparse(target.value)} is {describe(column.kind)}"
+    value = coerce(body, body.value(source), column.kind.item, node, why)
     place = place_of(column).element(index_text(body, target, column)).text
-    body.emit(f"{place} = {_kept(body, value, column.kind)};")
+    body.emit(f"{place} = {_as_column_item(body, value, column.kind)};")
 
 
 def _column(body: FunctionBody, node: ast.expr) -> Value | None:
@@ -33,7 +33,7 @@ def _column(body: FunctionBody, node: ast.expr) -> Value | None:
     return body.value(node) if isinstance(node, ast.Attribute) else None
 
 
-def _kept(body: FunctionBody, value: Value, kind: Cells) -> str:
+def _as_column_item(body: FunctionBody, value: Value, kind: Cells) -> str:
     """Return ``value`` as a column keeps it; of an integer that does not fit the nearest, where Python raises."""
     if kind.c == "double":
         return value.text

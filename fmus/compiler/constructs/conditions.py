@@ -4,11 +4,11 @@ import ast
 from typing import Any
 
 from fmus.compiler.constructs.arithmetic import unary
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Scalar, describe
+from fmus.compiler.target.aggregates import elements
 from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
-from fmus.compiler.target.making import elements
-from fmus.compiler.target.storage import hoist, put, settled
+from fmus.compiler.target.storage import hoist, materialise, put
 from fmus.compiler.target.values import (
     AND,
     BIT_AND,
@@ -48,15 +48,15 @@ def condition(body: FunctionBody, node: ast.expr) -> Value:
     if isinstance(node, ast.BoolOp):
         return _all_or_any(body, node)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return negated(condition(body, node.operand))
+        return negation(condition(body, node.operand))
     value = body.value(node)
     if not is_scalar(value.kind):
-        what = f"the truth of {described(value.kind)}"
+        what = f"the truth of {describe(value.kind)}"
         raise CannotError(node, what, "write the comparison that is meant")
     return truth(value)
 
 
-def negated(value: Value) -> Value:
+def negation(value: Value) -> Value:
     """Return ``not value``."""
     if value.const is not UNKNOWN:
         return literal(not value.const)
@@ -74,13 +74,13 @@ def comparison(body: FunctionBody, node: ast.Compare) -> Value:
     terms = []
     for number, (sign, right_node) in enumerate(zip(node.ops, node.comparators, strict=True)):
         if isinstance(sign, ast.In | ast.NotIn):
-            terms.append(_contained(body, node, left, right_node, isinstance(sign, ast.NotIn)))
+            terms.append(_membership(body, node, left, right_node, isinstance(sign, ast.NotIn)))
             right = left
         else:
             right = body.value(right_node)
             if number + 1 < len(node.ops) and is_scalar(right.kind):
-                right = settled(body, right, "middle")
-            terms.append(_compared(body, node, left, sign, right))
+                right = materialise(body, right, "middle")
+            terms.append(_comparison(body, node, left, sign, right))
         left = right
     if len(terms) == 1:
         return terms[0]
@@ -89,13 +89,13 @@ def comparison(body: FunctionBody, node: ast.Compare) -> Value:
     return Value(BOOL, " && ".join(within(term, BIT_AND) for term in terms), AND)
 
 
-def _compared(body: FunctionBody, node: ast.Compare, left: Value, sign: ast.cmpop, right: Value) -> Value:
+def _comparison(body: FunctionBody, node: ast.Compare, left: Value, sign: ast.cmpop, right: Value) -> Value:
     if isinstance(sign, ast.Is | ast.IsNot):
         word = "is" if isinstance(sign, ast.Is) else "is not"
         raise CannotError(node, f"'{word}'", f"write {'==' if word == 'is' else '!='}")
     for value in (left, right):
         if not is_scalar(value.kind):
-            what = f"a comparison of {described(value.kind)}"
+            what = f"a comparison of {describe(value.kind)}"
             raise CannotError(node, what, "compare the fields or items that are meant")
     text, level = SIGNS[type(sign)]
     if (left.kind == FLOAT) != (right.kind == FLOAT):
@@ -115,7 +115,7 @@ def _int_with_float(body: FunctionBody, left: Value, sign: str, right: Value) ->
         return None
     helper = body.program.helper("compare_int_float")
     one, other = (left, right) if whole is left else (right, left)
-    other = settled(body, other, "real")
+    other = materialise(body, other, "real")
     turned = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(sign, sign) if whole is right else sign
     exact = f"{helper}({one.text}, {other.text}) {turned} 0"
     if sign == "!=":
@@ -123,15 +123,15 @@ def _int_with_float(body: FunctionBody, left: Value, sign: str, right: Value) ->
     return Value(BOOL, f"{within(other, SHIFT)} == {within(other, SHIFT)} && {exact}", AND)
 
 
-def _contained(body: FunctionBody, node: ast.Compare, left: Value, right_node: ast.expr, absent: bool) -> Value:
+def _membership(body: FunctionBody, node: ast.Compare, left: Value, right_node: ast.expr, absent: bool) -> Value:
     """Return ``left in (A, B)`` of integers: Python compares floats by identity first, C cannot."""
     if isinstance(right_node, ast.List | ast.Set):
         right_node = ast.copy_location(ast.Tuple(right_node.elts, ast.Load()), right_node)
     right = body.value(right_node)
     if not isinstance(right.kind, Array) or right.kind.item not in (INT, BOOL) or left.kind not in (INT, BOOL):
-        what = f"'in' of {described(left.kind)} and {described(right.kind)}"
+        what = f"'in' of {describe(left.kind)} and {describe(right.kind)}"
         raise CannotError(node, what, "look for an int in a tuple of ints; compare others with ==")
-    left = settled(body, as_int(left), "sought")
+    left = materialise(body, as_int(left), "sought")
     equal = [
         f"{within(left, SHIFT)} {'!=' if absent else '=='} {within(as_int(item), SHIFT)}"
         for item in elements(body, right)
@@ -150,10 +150,10 @@ def arm(body: FunctionBody, node: ast.expr, as_truth: bool = False) -> tuple[lis
 
 def _all_or_any(body: FunctionBody, node: ast.BoolOp) -> Value:
     """Return the truth of ``a and b`` or ``a or b``."""
-    return _joined(body, node, [arm(body, item, as_truth=True) for item in node.values])
+    return _join(body, node, [arm(body, item, as_truth=True) for item in node.values])
 
 
-def _joined(body: FunctionBody, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -> Value:
+def _join(body: FunctionBody, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -> Value:
     """Return truth values joined."""
     if any(lines for lines, _ in arms[1:]):
         return _one_by_one(body, node, arms, "holds")
@@ -169,7 +169,7 @@ def _one_by_one(body: FunctionBody, node: ast.BoolOp, arms: list[tuple[list[Any]
     kind = arms[0][1].kind
     assert isinstance(kind, Scalar)
     result = Value(kind, body.names.add(name))
-    goes_on = truth(result) if isinstance(node.op, ast.And) else negated(truth(result))
+    goes_on = truth(result) if isinstance(node.op, ast.And) else negation(truth(result))
     body.lines += arms[0][0]
     body.emit(f"{kind.c} {result.text} = {arms[0][1].text};")
     for lines, value in arms[1:]:
@@ -185,10 +185,10 @@ def boolean(body: FunctionBody, node: ast.BoolOp) -> Value:
     arms = [arm(body, item) for item in node.values]
     kind = arms[0][1].kind
     if all(value.kind == BOOL for _, value in arms):
-        return _joined(body, node, arms)
+        return _join(body, node, arms)
     word = "and" if isinstance(node.op, ast.And) else "or"
     if any(value.kind != kind for _, value in arms) or not isinstance(kind, Scalar):
-        what = f"'{word}' between {' and '.join(dict.fromkeys(described(value.kind) for _, value in arms))}"
+        what = f"'{word}' between {' and '.join(dict.fromkeys(describe(value.kind) for _, value in arms))}"
         raise CannotError(node, what, "write a comparison for each, or a if c else b")
     return _one_by_one(body, node, arms, "chosen")
 
@@ -200,7 +200,7 @@ def choice(body: FunctionBody, node: ast.IfExp) -> Value:
     if {first.kind, other.kind} == {INT, BOOL}:
         first, other = as_int(first), as_int(other)
     if first.kind != other.kind:
-        what = f"{described(first.kind)} or {described(other.kind)}, by a condition"
+        what = f"{describe(first.kind)} or {describe(other.kind)}, by a condition"
         advice = "make both the same: 1.0, not 1" if FLOAT in (first.kind, other.kind) else "make both the same"
         raise CannotError(node, what, advice)
     if not first_lines and not other_lines:

@@ -8,10 +8,10 @@ from fmus.compiler.constructs.conditions import condition
 from fmus.compiler.constructs.loops import is_call, items_at, range_head, range_of, steady
 from fmus.compiler.constructs.unpacking import items_of
 from fmus.compiler.source.bindings import Home
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Scalar, describe
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import put
 from fmus.compiler.target.values import Place, Value, as_int
 from fmus.compiler.target.variables import LocalVariable
@@ -69,7 +69,7 @@ def _name_items(body: FunctionBody, scope: dict[str, LocalVariable], target: ast
         raise CannotError(target, f"{ast.unparse(target)} in a generator", "write names")
 
 
-def made_tuple(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+def lower_tuple(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
     """Return ``tuple(f(x) for x in xs)``."""
     loop = _loop(body, generator)
     if loop.tests:
@@ -110,7 +110,7 @@ def _run(body: FunctionBody, loop: Loop, inside: list[str]) -> None:
 def any_or_all(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]:
     """Return the translation of any or all."""
 
-    def made(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+    def lower(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
         loop = _loop(body, generator, truth=True)
         result = body.names.add(f"{word}_of")
         test = loop.item.text if word == "any" else f"!({loop.item.text})"
@@ -119,7 +119,7 @@ def any_or_all(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp]
         _run(body, loop, [f"if ({test}) {{", f"{result} = {found};", "break;", "}"])
         return Value(BOOL, result)
 
-    return made
+    return lower
 
 
 def total(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
@@ -127,7 +127,7 @@ def total(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Va
     loop = _loop(body, generator)
     if loop.item.kind == FLOAT:
         raise CannotError(node, "sum() of floats, which from Python 3.12 on adds otherwise", "write a loop that adds")
-    item = coerced(body, loop.item, INT, generator.elt, "sum() of integers is meant")
+    item = coerce(body, loop.item, INT, generator.elt, "sum() of integers is meant")
     result = body.names.add("sum")
     body.emit(f"int64_t {result} = 0;")
     _run(body, loop, [f"{result} += {item.text};"])
@@ -137,14 +137,14 @@ def total(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Va
 def extreme(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]:
     """Return the translation of min or max: the first item stays unless a later one is less (or greater)."""
 
-    def made(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+    def lower(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
         if node.keywords:
             raise CannotError(node, f"{word}() with {node.keywords[0].arg}", "write a loop")
         loop = _loop(body, generator)
         if loop.tests or not loop.length:
             raise CannotError(generator, f"{word}() of what may be empty", "write a loop that begins with a value")
         if not isinstance(loop.item.kind, Scalar):
-            raise CannotError(node, f"{word}() of {described(loop.item.kind)}", "give it numbers")
+            raise CannotError(node, f"{word}() of {describe(loop.item.kind)}", "give it numbers")
         item = as_int(loop.item)
         result, first, new = body.names.add(f"{word}_of"), body.names.add("first"), body.names.add("new")
         kind = item.kind
@@ -154,11 +154,11 @@ def extreme(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp], V
         _run(body, loop, [f"const {kind.c} {new} = {item.text};", test, f"{result} = {new};", "}", f"{first} = false;"])
         return Value(kind, result)
 
-    return made
+    return lower
 
 
 GENERATORS: dict[Any, Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]] = {
-    tuple: made_tuple,
+    tuple: lower_tuple,
     any: any_or_all("any"),
     all: any_or_all("all"),
     sum: total,

@@ -5,17 +5,17 @@ The same of a field: ``m = m._replace(xs=m.xs[:i] + (x,) + m.xs[i + 1 :])``.
 
 import ast
 
-from fmus.compiler.source.kinds import INT, Array, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import INT, Array, describe
 from fmus.compiler.target.access import is_at
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import put, put_whole
 from fmus.compiler.target.values import UNKNOWN, Place, Value
 from fmus.compiler.target.variables import LocalVariable, looks_at
 
 
-def changed_item(node: ast.expr, whole: ast.expr) -> tuple[ast.expr, ast.expr] | None:
+def item_change(node: ast.expr, whole: ast.expr) -> tuple[ast.expr, ast.expr] | None:
     """Return (index, new item) if ``node`` is ``whole[:i] + (x,) + whole[i + 1 :]``, else None."""
     if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and isinstance(node.left, ast.BinOp)):
         return None
@@ -54,7 +54,7 @@ def with_item(body: FunctionBody, node: ast.BinOp) -> Value | None:
     if not (isinstance(node.left, ast.BinOp) and isinstance(node.left.left, ast.Subscript)):
         return None
     whole = node.left.left.value
-    changed = changed_item(node, whole)
+    changed = item_change(node, whole)
     if changed is None:
         return None
     value = body.value(whole)
@@ -87,13 +87,13 @@ def _index(body: FunctionBody, kind: Array, node: ast.expr) -> Value:
 
 
 def _item(body: FunctionBody, kind: Array, node: ast.expr) -> Value:
-    return coerced(body, body.value(node), kind.item, node, f"an item is {described(kind.item)}")
+    return coerce(body, body.value(node), kind.item, node, f"an item is {describe(kind.item)}")
 
 
 def change_item(body: FunctionBody, known: LocalVariable, name: str, index: ast.expr, item: ast.expr) -> None:
     """Write the new item."""
     if not isinstance(known.kind, Array):
-        raise CannotError(item, f"another item in {described(known.kind)}", "only tuples of one kind have items")  # type: ignore[arg-type]
+        raise CannotError(item, f"another item in {describe(known.kind)}", "only tuples of one kind have items")  # type: ignore[arg-type]
     place = _index(body, known.kind, index)
     new = _item(body, known.kind, item)
     put(body, known.place.element(place.text), new, busy=looks_at(new, known.place.text, item, name))

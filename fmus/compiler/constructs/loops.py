@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from types import FunctionType
 
 from fmus.compiler.constructs.unpacking import unpack
-from fmus.compiler.source.bindings import Path, block, stored_in
-from fmus.compiler.source.kinds import INT, Array, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.bindings import Path, block, variables_bound
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import INT, Array, describe
+from fmus.compiler.target.aggregates import tuple_of
 from fmus.compiler.target.body import STATEMENTS, FunctionBody
-from fmus.compiler.target.making import tuple_of
 from fmus.compiler.target.storage import hoist, item_of
 from fmus.compiler.target.values import SUM, UNKNOWN, Value, as_int, literal
 from fmus.compiler.target.variables import LocalVariable, bind, variable
@@ -54,7 +54,7 @@ def for_loop(body: FunctionBody, node: ast.For) -> None:
         assert isinstance(target, ast.Tuple)
         source, target = source.args[0], target.elts[1]
     index = known.c if known else body.names.add("i")
-    length, item = items_at(body, source, index, stored_in(node.body))
+    length, item = items_at(body, source, index, variables_bound(node.body))
     body.emit(f"for ({'int64_t' if known else 'int'} {index} = 0; {index} < {length}; ++{index}) {{")
     if known:
         known.low, known.high = 0, length - 1
@@ -96,7 +96,7 @@ def range_of(body: FunctionBody, node: ast.expr) -> LoopRange:
     values = [body.value(item) for item in node.args]
     for value, item in zip(values, node.args, strict=True):
         if value.kind != INT:
-            raise CannotError(item, f"range() of {described(value.kind)}", "write an int: math.floor(x), int(x)")
+            raise CannotError(item, f"range() of {describe(value.kind)}", "write an int: math.floor(x), int(x)")
     values = [as_int(value) for value in values]
     start, stop = (literal(0), values[0]) if len(values) == 1 else (values[0], values[1])
     step = values[2].const if len(values) == 3 else 1
@@ -145,14 +145,14 @@ def range_head(counter: str, numbers: LoopRange, stop: str) -> str:
 def items_at(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     """Return how many items ``node`` has, and the one at ``index``; ``changed`` names what the loop binds."""
     if is_call(body, node, enumerate):
-        return _enumerated(body, node, index, changed)
+        return _lower_enumerate(body, node, index, changed)
     if is_call(body, node, zip):
-        return _zipped(body, node, index, changed)
+        return _lower_zip(body, node, index, changed)
     if is_call(body, node, reversed):
         raise CannotError(node, "reversed()", "write range(n - 1, -1, -1) and xs[i], or xs[::-1]")
     value = body.value(node)
     if not isinstance(value.kind, Array):
-        raise CannotError(node, f"a loop over {described(value.kind)}", "loop over a tuple or range(...)")
+        raise CannotError(node, f"a loop over {describe(value.kind)}", "loop over a tuple or range(...)")
     names = {item.id for item in ast.walk(node) if isinstance(item, ast.Name)}
     stays = value.place and not names & changed
     if not stays:
@@ -161,7 +161,7 @@ def items_at(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) 
     return value.kind.length, Value(item.kind, item.text, place=True, fixed=value.fixed or stays)  # type: ignore[union-attr]
 
 
-def _enumerated(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
+def _lower_enumerate(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     assert isinstance(node, ast.Call)
     starts = [*node.args[1:], *(item.value for item in node.keywords if item.arg == "start")]
     if not node.args or len(starts) > 1 or len(node.keywords) > len(starts):
@@ -177,7 +177,7 @@ def _enumerated(body: FunctionBody, node: ast.expr, index: str, changed: set[str
     return length, tuple_of(body, (number, item))
 
 
-def _zipped(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
+def _lower_zip(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     assert isinstance(node, ast.Call)
     if any(item.arg != "strict" for item in node.keywords) or not node.args:
         raise CannotError(node, "zip() with these arguments", "write zip(xs, ys, strict=True)")

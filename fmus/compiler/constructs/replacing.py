@@ -2,17 +2,17 @@
 
 import ast
 
-from fmus.compiler.source.kinds import Kind, Struct, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import Kind, Struct, describe
 from fmus.compiler.target.access import is_at
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import coerced
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import put, put_members
 from fmus.compiler.target.values import Place, Value
 
 
-def replaced(body: FunctionBody, node: ast.Call, value: Value) -> Value:
+def lower_replace(body: FunctionBody, node: ast.Call, value: Value) -> Value:
     """Return a copy of ``value`` with other fields."""
     changes = _changes(body, node, value)
     members = {member_name(name): _new(body, kind, item) for name, (kind, item) in changes.items()}
@@ -29,7 +29,7 @@ def replaced(body: FunctionBody, node: ast.Call, value: Value) -> Value:
 
 
 def _new(body: FunctionBody, kind: Kind, node: ast.expr) -> Value:
-    return coerced(body, body.value(node), kind, node, f"the field is {described(kind)}")
+    return coerce(body, body.value(node), kind, node, f"the field is {describe(kind)}")
 
 
 def _changes(body: FunctionBody, node: ast.Call, value: Value) -> dict[str, tuple[Kind, ast.expr]]:

@@ -5,11 +5,12 @@ from collections.abc import Callable
 
 from fmus.compiler.constructs.columns import may_write, write
 from fmus.compiler.constructs.conditions import condition
-from fmus.compiler.constructs.items import change_item, changed_item
+from fmus.compiler.constructs.items import change_item, item_change
 from fmus.compiler.constructs.replacing import is_replace
 from fmus.compiler.constructs.unpacking import items_of, unpack_assignment
 from fmus.compiler.source.bindings import block
-from fmus.compiler.source.kinds import (
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import (
     INT,
     NOTHING,
     Array,
@@ -18,15 +19,14 @@ from fmus.compiler.source.kinds import (
     NoKindError,
     Open,
     Struct,
-    described,
+    describe,
     is_store,
     kind_of,
 )
-from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.access import is_at, looks_at_place
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import STATEMENTS, FunctionBody
-from fmus.compiler.target.making import coerced
-from fmus.compiler.target.storage import put, put_whole, settled, text_of
+from fmus.compiler.target.storage import materialise, put, put_whole, text_of
 from fmus.compiler.target.values import UNKNOWN, Place, Value, is_scalar
 from fmus.compiler.target.variables import bind, variable
 
@@ -49,7 +49,7 @@ def assign(body: FunctionBody, node: ast.Assign) -> None:
 
 
 def _assign_name(body: FunctionBody, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
-    item = changed_item(source, target)
+    item = item_change(source, target)
     if item is not None:
         known = variable(body, target.id)
         if known.kind is None or (known.parameter and known.fixed):
@@ -65,7 +65,7 @@ def _assign_name(body: FunctionBody, target: ast.Name, source: ast.expr, node: a
     bind(body, target.id, value, node, source)
 
 
-def annotated(body: FunctionBody, node: ast.AnnAssign) -> None:
+def assign_annotated(body: FunctionBody, node: ast.AnnAssign) -> None:
     """Write ``x: float = ...``; the type must be that of the value."""
     if node.value is None or not isinstance(node.target, ast.Name):
         raise CannotError(node, "a type without a value", "bind the variable where it gets its value")
@@ -74,8 +74,8 @@ def annotated(body: FunctionBody, node: ast.AnnAssign) -> None:
     value = body.value(node.value)
     if isinstance(kind, Open) and isinstance(value.kind, Array) and value.kind.item == kind.item:
         kind = value.kind
-    why = f"{node.target.id} is declared {described(kind)}"
-    bind(body, node.target.id, coerced(body, value, kind, node, why), node, node.value)
+    why = f"{node.target.id} is declared {describe(kind)}"
+    bind(body, node.target.id, coerce(body, value, kind, node, why), node, node.value)
 
 
 def _annotation(body: FunctionBody, node: ast.expr) -> Kind:
@@ -88,7 +88,7 @@ def _annotation(body: FunctionBody, node: ast.expr) -> Kind:
         raise CannotError(node, f"the type {ast.unparse(node)}", "name a type that the module knows") from None
 
 
-def augmented(body: FunctionBody, node: ast.AugAssign) -> None:
+def assign_augmented(body: FunctionBody, node: ast.AugAssign) -> None:
     """Write ``x += ...``."""
     if isinstance(node.target, ast.Subscript):
         here = ast.copy_location(ast.Subscript(node.target.value, node.target.slice, ast.Load()), node)
@@ -237,10 +237,10 @@ def _give_value(body: FunctionBody, node: ast.expr, value: Value) -> None:
     name = body.function.__name__
     if isinstance(wanted, Open):
         if not isinstance(value.kind, Array) or value.kind.item != wanted.item:
-            what = f"{described(value.kind)} where {name}() returns {described(wanted)}"
+            what = f"{describe(value.kind)} where {name}() returns {describe(wanted)}"
             raise CannotError(node, what, "return such a tuple")
         wanted = body.result = body.made.result = value.kind
-    value = coerced(body, value, wanted, node, f"{name}() returns {described(wanted)}")
+    value = coerce(body, value, wanted, node, f"{name}() returns {describe(wanted)}")
     if not body.outs:
         body.emit(f"return {text_of(body, value, 'made')};")
         return
@@ -269,7 +269,7 @@ def _give_items(body: FunctionBody, value: Value, fill_items: Callable[[list[Pla
         fill_items(body.outs)
         return
     made = Place(body.names.add("next"))
-    body.emit(f"{body.program.declared(value.kind.items[body.outs.index(changed)], made.text)};")
+    body.emit(f"{body.program.declaration(value.kind.items[body.outs.index(changed)], made.text)};")
     fill_items([made if place == changed else place for place in body.outs])
     body.emit(f"{changed.whole} = {made.text};")
 
@@ -278,8 +278,8 @@ def match(body: FunctionBody, node: ast.Match) -> None:
     """Write match over an integer: a switch, or ifs where a case has a condition or leaves a loop."""
     subject = body.value(node.subject)
     if subject.kind != INT:
-        raise CannotError(node.subject, f"match of {described(subject.kind)}", "match an int, or write if and elif")
-    subject = settled(body, subject, "subject")
+        raise CannotError(node.subject, f"match of {describe(subject.kind)}", "match an int, or write if and elif")
+    subject = materialise(body, subject, "subject")
     labels = [_labels(body, case.pattern) for case in node.cases]
     _refuse_twice(body, node)
     leaves = any(isinstance(item, ast.Break) for case in node.cases for part in case.body for item in ast.walk(part))
@@ -353,8 +353,8 @@ def _labels(body: FunctionBody, pattern: ast.pattern) -> list[str] | None:
 
 STATEMENTS |= {
     ast.Assign: assign,
-    ast.AnnAssign: annotated,
-    ast.AugAssign: augmented,
+    ast.AnnAssign: assign_annotated,
+    ast.AugAssign: assign_augmented,
     ast.Expr: expression,
     ast.Pass: nothing,
     ast.If: branch,

@@ -2,13 +2,13 @@
 
 import ast
 
-from fmus.compiler.source.kinds import FLOAT, INT, Array, Cells, Mixed, Struct, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
 from fmus.compiler.source.resolve import attribute as static_attribute
+from fmus.compiler.source.types import FLOAT, INT, Array, Cells, Mixed, Struct, describe
+from fmus.compiler.target.aggregates import elements, tuple_of
 from fmus.compiler.target.body import EXPRESSIONS, METHODS, FunctionBody
-from fmus.compiler.target.making import elements, tuple_of
 from fmus.compiler.target.names import member_name
-from fmus.compiler.target.storage import address, item_of, settled
+from fmus.compiler.target.storage import address, item_of, materialise
 from fmus.compiler.target.values import UNARY, UNKNOWN, Value, is_scalar, place_of, within
 
 COLUMN_RANGES = {"int32_t": ("INT32_MIN", "INT32_MAX", 2**31), "int16_t": ("INT16_MIN", "INT16_MAX", 2**15)}
@@ -39,7 +39,7 @@ def attribute(body: FunctionBody, node: ast.Attribute) -> Value:
     if node.attr in ("value", "name") and value.kind == INT:
         advice = "leave .value out" if node.attr == "value" else "text is made outside of the model"
         raise CannotError(node, f".{node.attr} of an integer variable", advice)
-    raise CannotError(node, f".{node.attr} of {described(value.kind)}", "only NamedTuples have fields")
+    raise CannotError(node, f".{node.attr} of {describe(value.kind)}", "only NamedTuples have fields")
 
 
 def field(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
@@ -50,7 +50,7 @@ def field(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
     if name not in kinds:
         return METHODS[property](body, value, name, node)
     if value.fill is not None or (not value.place and isinstance(kinds[name], Array)):
-        value = settled(body, value, cls.__name__.lower())
+        value = materialise(body, value, cls.__name__.lower())
     const = UNKNOWN if value.const is UNKNOWN else getattr(value.const, name)
     text = place_of(value).member(member_name(name)).text
     return Value(kinds[name], text, place=value.place, fixed=value.fixed and value.place, const=const)
@@ -64,7 +64,7 @@ def subscript(body: FunctionBody, node: ast.Subscript) -> Value:
     if isinstance(value.kind, Cells):
         return _cell(value, index_text(body, node, value))
     if not isinstance(value.kind, Array | Mixed):
-        raise CannotError(node, f"an index into {described(value.kind)}", "only tuples have items")
+        raise CannotError(node, f"an index into {describe(value.kind)}", "only tuples have items")
     if isinstance(node.slice, ast.Slice):
         return _part(body, node, value, node.slice)
     index = _index(body, node.slice, value)
@@ -73,7 +73,7 @@ def subscript(body: FunctionBody, node: ast.Subscript) -> Value:
         return _item(body, value, _place(node, int(index.const), length), index)
     if isinstance(value.kind, Mixed):
         raise CannotError(node, "an index that varies into a tuple of different kinds", "write the number")
-    value = settled(body, value, "items")
+    value = materialise(body, value, "items")
     item = item_of(value, _in_range(body, node, index, length))
     return Value(item.kind, item.text, place=True, fixed=value.fixed)
 
@@ -81,7 +81,7 @@ def subscript(body: FunctionBody, node: ast.Subscript) -> Value:
 def _index(body: FunctionBody, node: ast.expr, value: Value) -> Value:
     index = body.value(node)
     if index.kind != INT:
-        what = f"an index into {described(value.kind)} that is {described(index.kind)}"
+        what = f"an index into {describe(value.kind)} that is {describe(index.kind)}"
         raise CannotError(node, what, "write an int: int(...), or 1 if c else 0")
     return index
 
@@ -91,13 +91,13 @@ def _field_at(body: FunctionBody, node: ast.Subscript, value: Value) -> Value:
     assert isinstance(value.kind, Struct)
     kinds = body.program.fields(value.kind.cls, node)
     if isinstance(node.slice, ast.Slice):
-        raise CannotError(node.slice, f"a part of {described(value.kind)}", "name the fields")
+        raise CannotError(node.slice, f"a part of {describe(value.kind)}", "name the fields")
     index = _index(body, node.slice, value)
     if index.const is not UNKNOWN:
         return field(body, value, list(kinds)[_place(node, int(index.const), len(kinds))], node)
     kind = next(iter(kinds.values()))
     if len(set(kinds.values())) > 1 or not is_scalar(kind):
-        what = f"an index that varies into {described(value.kind)}, whose fields differ"
+        what = f"an index that varies into {describe(value.kind)}, whose fields differ"
         raise CannotError(node, what, "name the field, or make the fields a tuple")
     text = _in_range(body, node, index, len(kinds))
     name = body.program.item_function(value.kind.cls)
@@ -143,7 +143,7 @@ def _item(body: FunctionBody, value: Value, place: int, index: Value) -> Value:
     """Return the item at a known place."""
     if value.items is not None:
         return value.items[place]
-    value = settled(body, value, "items")
+    value = materialise(body, value, "items")
     if isinstance(value.kind, Mixed):
         const = UNKNOWN if value.const is UNKNOWN else value.const[place]
         text = place_of(value).member(f"item{place}").text
@@ -161,7 +161,7 @@ def _part(body: FunctionBody, node: ast.Subscript, value: Value, part: ast.Slice
     if any(end is not None and (end.kind != INT or end.const is UNKNOWN) for end in ends):
         raise CannotError(node, "a slice with ends that vary", "write whole numbers or constants: xs[1:4]")
     if not isinstance(value.kind, Array):
-        raise CannotError(node, f"a slice of {described(value.kind)}", "name the items that are meant")
+        raise CannotError(node, f"a slice of {describe(value.kind)}", "name the items that are meant")
     if ends[2] is not None and ends[2].const == 0:
         raise CannotError(node, "a slice with step 0", "write another step")
     places = range(value.kind.length)[slice(*(None if end is None else end.const for end in ends))]

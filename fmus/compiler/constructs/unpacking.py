@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from fmus.compiler.constructs.tuples import field
 from fmus.compiler.source.bindings import reads
-from fmus.compiler.source.kinds import Array, Mixed, Struct, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import Array, Mixed, Struct, describe
+from fmus.compiler.target.aggregates import elements
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import elements
-from fmus.compiler.target.storage import hoist, settled
+from fmus.compiler.target.storage import hoist, materialise
 from fmus.compiler.target.values import Place, Value, place_of
 from fmus.compiler.target.variables import bind, open_place
 
@@ -24,7 +24,7 @@ def unpack_assignment(body: FunctionBody, target: ast.Tuple, source: ast.expr, n
     if value.items is not None and any(reads(source, name) for name in names):
         value = _apart(body, value, target, source)
     elif value.items is None:
-        value = settled(body, value, "items")
+        value = materialise(body, value, "items")
     unpack(body, target, value, node)
 
 
@@ -44,7 +44,7 @@ def _from_call(body: FunctionBody, target: ast.Tuple, value: Value, source: ast.
         if place is None:
             word = f"next_{part.id}" if isinstance(part, ast.Name) and part.id != "_" else "unused"
             place = Place(body.names.add(word))
-            body.emit(f"{body.program.declared(kind, place.text)};")
+            body.emit(f"{body.program.declaration(kind, place.text)};")
             later.append((part, Value(kind, place.text, place=True, fixed=True)))
         places.append(place)
     value.fill_items(places)
@@ -91,11 +91,11 @@ def items_of(body: FunctionBody, value: Value, node: ast.AST) -> tuple[Value, ..
     if isinstance(value.kind, Array):
         return elements(body, value)
     if isinstance(value.kind, Mixed):
-        whole = settled(body, value, "items")
+        whole = materialise(body, value, "items")
         places = [place_of(whole).member(f"item{at}").text for at in range(len(value.kind.items))]
         pairs = zip(value.kind.items, places, strict=True)
         return tuple(Value(kind, text, place=True, fixed=whole.fixed) for kind, text in pairs)
     if isinstance(value.kind, Struct):
-        whole = settled(body, value, "items")
+        whole = materialise(body, value, "items")
         return tuple(field(body, whole, name, node) for name in body.program.fields(value.kind.cls, node))
-    raise CannotError(node, f"the items of {described(value.kind)}", "only tuples have items")
+    raise CannotError(node, f"the items of {describe(value.kind)}", "only tuples have items")

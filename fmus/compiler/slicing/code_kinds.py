@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator
 from types import FunctionType
 from typing import Any, TypeAlias
 
-from fmus.compiler.source.kinds import (
+from fmus.compiler.source.reading import Library
+from fmus.compiler.source.resolve import Static, owner_of, static
+from fmus.compiler.source.types import (
     FLOAT,
     INT,
     Array,
@@ -24,8 +26,6 @@ from fmus.compiler.source.kinds import (
     parts,
     whole_of,
 )
-from fmus.compiler.source.reading import Library
-from fmus.compiler.source.resolve import Static, owner_of, static
 
 Scope: TypeAlias = dict[str, Kind | None]
 """Kinds of the variables that generators around an expression bind."""

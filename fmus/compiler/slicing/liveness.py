@@ -9,8 +9,8 @@ from typing import Any
 from fmus.compiler.slicing.code_kinds import CodeKinds, Scope, fields_along, has_open
 from fmus.compiler.source.bindings import Bindings, bindings
 from fmus.compiler.source.discovery import Discovery
-from fmus.compiler.source.kinds import Kind, Mixed, Scalar, Struct, fields_of, is_named_tuple, parts, whole_of
 from fmus.compiler.source.reading import Library
+from fmus.compiler.source.types import Kind, Mixed, Scalar, Struct, fields_of, is_named_tuple, parts, whole_of
 from fmus.compiler.source.writers import Writers
 
 ALL_ITEMS = -1
@@ -153,14 +153,14 @@ class Visitor:
         """Note what a live statement needs."""
         if isinstance(node, ast.Return):
             if node.value is not None:
-                self.returned(node.value)
+                self.visit_result(node.value)
         elif isinstance(node, ast.Assign):
             self.bound(node.targets[0], node.value)
         elif isinstance(node, ast.AnnAssign | ast.AugAssign):
             if node.value is not None:
                 self.bound(node.target, node.value)
             if isinstance(node, ast.AugAssign):
-                self.use(ast.copy_location(_loaded(node.target), node))
+                self.use(ast.copy_location(_as_load(node.target), node))
         elif isinstance(node, ast.Expr):
             self.use(node.value)
         elif isinstance(node, ast.If):
@@ -171,7 +171,7 @@ class Visitor:
             self.use(node.test)
             self.block(node.body, True)
         elif isinstance(node, ast.For):
-            self.iterated(node.iter)
+            self.visit_iterable(node.iter)
             self.block(node.body, True)
         elif isinstance(node, ast.Match):
             self.use(node.subject)
@@ -180,12 +180,12 @@ class Visitor:
                     self.use(case.guard)
                 self.block(case.body, in_loop)
 
-    def returned(self, value: ast.expr) -> None:
+    def visit_result(self, value: ast.expr) -> None:
         """Note what the live items of a returned value need."""
         if isinstance(value, ast.IfExp):
             self.use(value.test)
-            self.returned(value.body)
-            self.returned(value.orelse)
+            self.visit_result(value.body)
+            self.visit_result(value.orelse)
         elif isinstance(value, ast.Tuple) and self._is_mixed(len(value.elts)):
             for number, item in enumerate(value.elts):
                 if self.solver.is_live_item(self.own, number):
@@ -218,7 +218,7 @@ class Visitor:
             self.solver.need_whole(None)
         self.use(value, live)
 
-    def iterated(self, node: ast.expr) -> None:
+    def visit_iterable(self, node: ast.expr) -> None:
         """Note what a loop needs that runs over ``node``."""
         kind = self.solver.kind(self.known, node, {})
         if isinstance(kind, Struct):
@@ -335,7 +335,7 @@ class Visitor:
         self._use_function(node, method, items, scope, 1)
 
 
-def _loaded(target: ast.expr) -> ast.expr:
+def _as_load(target: ast.expr) -> ast.expr:
     loaded = copy.copy(target)
     loaded.ctx = ast.Load()  # type: ignore[attr-defined]
     return loaded

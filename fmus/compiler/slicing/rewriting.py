@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, cast
 
 from fmus.compiler.slicing.code_kinds import Scope, has_open
 from fmus.compiler.slicing.liveness import Solver, Visitor
-from fmus.compiler.source.kinds import Kind, Mixed, Struct, fields_of, is_named_tuple, whole_of
+from fmus.compiler.source.types import Kind, Mixed, Struct, fields_of, is_named_tuple, whole_of
 
 
 class DeadValue(NamedTuple):
@@ -56,9 +56,9 @@ class Rewriter:
             made.subject = self.expression(made.subject)
             made.cases = [self._case(case, in_loop) for case in made.cases]
         elif isinstance(made, ast.Return):
-            made.value = None if made.value is None else self.returned(made.value)
+            made.value = None if made.value is None else self.visit_result(made.value)
         elif isinstance(made, ast.Assign):
-            made.value = self.assigned(made.targets[0], made.value)
+            made.value = self.rewrite_value(made.targets[0], made.value)
         else:
             made = self.expression(made)
         return made
@@ -72,13 +72,13 @@ class Rewriter:
         made.body = self.block(case.body, in_loop)
         return made
 
-    def returned(self, value: ast.expr) -> ast.expr:
+    def visit_result(self, value: ast.expr) -> ast.expr:
         """Return a returned value without the items that nobody reads."""
         result = self.known.result
         if isinstance(value, ast.IfExp):
             made = copy.copy(value)
             made.test = self.expression(value.test)
-            made.body, made.orelse = self.returned(value.body), self.returned(value.orelse)
+            made.body, made.orelse = self.visit_result(value.body), self.visit_result(value.orelse)
             return made
         if isinstance(value, ast.Tuple) and isinstance(result, Mixed) and len(result.items) == len(value.elts):
             items = copy.copy(value)
@@ -89,7 +89,7 @@ class Rewriter:
             return items
         return cast("ast.expr", self.expression(value))
 
-    def assigned(self, target: ast.expr, value: ast.expr) -> ast.expr:
+    def rewrite_value(self, target: ast.expr, value: ast.expr) -> ast.expr:
         """Return what is assigned, without the items of a tuple that get dead names."""
         if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(target.elts) == len(value.elts):
             made = copy.copy(value)

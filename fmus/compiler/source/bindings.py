@@ -164,6 +164,6 @@ def reads(node: ast.AST, name: str) -> bool:
     return any(item.id == name and isinstance(item.ctx, ast.Load) for item in names_in(node))
 
 
-def stored_in(body: Iterable[ast.AST]) -> set[str]:
+def variables_bound(body: Iterable[ast.AST]) -> set[str]:
     """Return the variables that statements bind."""
     return {name.id for node in body for name in names_in(node) if isinstance(name.ctx, ast.Store)}

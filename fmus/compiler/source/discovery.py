@@ -8,10 +8,10 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.source.bindings import bindings
-from fmus.compiler.source.kinds import NoKindError, hints_of, is_named_tuple, whole_of
+from fmus.compiler.source.diagnostics import CannotError
 from fmus.compiler.source.reading import Library
-from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import static
+from fmus.compiler.source.types import NoKindError, hints_of, is_named_tuple, whole_of
 
 
 class Discovery:

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Callable, Iterable
 
 from fmus.compiler.source.bindings import names_in
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
 
 State = frozenset[str] | None
 """The names that are certainly bound; None: this place is never reached."""
@@ -45,7 +45,7 @@ class Flow:
         """Return the state after one statement."""
         if isinstance(node, ast.If):
             self.use(node.test, state)
-            return joined(self.body(node.body, state), self.body(node.orelse, state))
+            return join_paths(self.body(node.body, state), self.body(node.orelse, state))
         if isinstance(node, ast.For):
             return self.for_loop(node, state)
         if isinstance(node, ast.While):
@@ -81,21 +81,21 @@ class Flow:
         inside = state | {name.id for name in names_in(node.target)}
         ways, end = self.loop(node.body, inside)
         if certainly_runs(node.iter, self.number):
-            return _joined_all([end, *ways]) if ways else end
-        return _joined_all([state, end, *ways])
+            return _join_all([end, *ways]) if ways else end
+        return _join_all([state, end, *ways])
 
     def while_loop(self, node: ast.While, state: frozenset[str]) -> State:
         """Return the state after a while loop, whose body may not run."""
         self.use(node.test, state)
         ways, _ = self.loop(node.body, state)
-        return _joined_all([state, *ways])
+        return _join_all([state, *ways])
 
     def loop(self, body: list[ast.stmt], state: frozenset[str]) -> tuple[list[State], State]:
         """Return the states at breaks, and at the end of a round."""
         self.breaks.append([])
         self.continues.append([])
         end = self.body(body, state)
-        return self.breaks.pop(), _joined_all([end, *self.continues.pop()])
+        return self.breaks.pop(), _join_all([end, *self.continues.pop()])
 
     def match(self, node: ast.Match, state: frozenset[str]) -> State:
         """Return the state after a match."""
@@ -108,20 +108,20 @@ class Flow:
             ends.append(self.body(case.body, state))
             wild = isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None
             whole = whole or (wild and case.guard is None)
-        return _joined_all(ends if whole else [*ends, state])
+        return _join_all(ends if whole else [*ends, state])
 
 
-def joined(a: State, b: State) -> State:
+def join_paths(a: State, b: State) -> State:
     """Return what is bound whichever way was taken."""
     if a is None or b is None:
         return b if a is None else a
     return a & b
 
 
-def _joined_all(states: Iterable[State]) -> State:
+def _join_all(states: Iterable[State]) -> State:
     result: State = None
     for state in states:
-        result = joined(result, state)
+        result = join_paths(result, state)
     return result
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
 
 NOTES = ("fmt:", "noqa", "type:", "ruff:", "pragma:", "mypy:")
 """Comments for tools, not for readers."""

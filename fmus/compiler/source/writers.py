@@ -5,8 +5,8 @@ from collections.abc import Callable
 from types import FunctionType
 
 from fmus.compiler.source.bindings import Bindings
+from fmus.compiler.source.diagnostics import CannotError
 from fmus.compiler.source.reading import Library
-from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import Static, static
 
 

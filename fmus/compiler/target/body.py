@@ -9,9 +9,9 @@ from typing import Any
 
 from fmus.compiler.source.advice import EXPRESSION_ADVICE, STATEMENT_ADVICE
 from fmus.compiler.source.bindings import Path
-from fmus.compiler.source.kinds import FLOAT, Kind, described
-from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError
 from fmus.compiler.source.resolve import Static, static
+from fmus.compiler.source.types import FLOAT, Kind, describe
 from fmus.compiler.target.names import FUNCTIONS, LocalNames
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.runtime import TEXTS
@@ -139,7 +139,7 @@ class FunctionBody:
             try:
                 handler = STATEMENTS.get(type(node))
                 if handler is None:
-                    raise CannotError(node, *refused_statement(node))
+                    raise CannotError(node, *refuse_statement(node))
                 handler(self, node)
             except CannotError as error:
                 self.refuse(error, node)
@@ -176,23 +176,23 @@ class FunctionBody:
         """Return an expression in C."""
         handler = EXPRESSIONS.get(type(node))
         if handler is None:
-            raise CannotError(node, *refused_expression(node))
+            raise CannotError(node, *refuse_expression(node))
         return handler(self, node)
 
     def scalar(self, node: ast.expr) -> Value:
         """Return an expression in C that is a number or truth value."""
         value = self.value(node)
         if not is_scalar(value.kind):
-            what = f"{described(value.kind)} where a number is expected"
+            what = f"{describe(value.kind)} where a number is expected"
             raise CannotError(node, what, "name the field or the index that is meant")
         return value
 
 
-def refused_expression(node: ast.AST) -> tuple[str, str]:
+def refuse_expression(node: ast.AST) -> tuple[str, str]:
     """Return what an expression is that is not of the language, and what to write."""
     return EXPRESSION_ADVICE.get(type(node), (f"the expression {ast.unparse(node)}", "write it in simpler steps"))
 
 
-def refused_statement(node: ast.AST) -> tuple[str, str]:
+def refuse_statement(node: ast.AST) -> tuple[str, str]:
     """Return what a statement is that is not of the language, and what to write."""
     return STATEMENT_ADVICE.get(type(node), ("this statement", "write it in simpler steps"))

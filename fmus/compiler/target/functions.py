@@ -6,17 +6,17 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.source.borrowing import borrowed
+from fmus.compiler.source.alias_analysis import aliases_of
+from fmus.compiler.source.diagnostics import CannotError
 from fmus.compiler.source.flow import Flow
-from fmus.compiler.source.kinds import NOTHING, Array, Kind, Mixed, Open, Struct, is_store
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.types import NOTHING, Array, Kind, Mixed, Open, Struct, is_store
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.in_place import InPlace, in_place
 from fmus.compiler.target.layout import flat, without_unused
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.signatures import signature
 from fmus.compiler.target.storage import put
-from fmus.compiler.target.values import Place, Value, is_scalar, returned_by_value
+from fmus.compiler.target.values import Place, Value, is_result_by_value, is_scalar
 from fmus.compiler.target.variables import variable
 
 MAX_INLINE_LINES = 20
@@ -122,26 +122,26 @@ def _parameter(body: FunctionBody, name: str, kind: Kind, changed: InPlace | Non
         body.anew.discard(name)
         known.pointer, known.fixed = True, not body.bindings.rebound(name)
         if isinstance(kind, Struct):
-            body.borrowed = borrowed(body.node, name, kind.cls)
-        return Parameter(known.c, kind, True, body.program.declared(kind, f"*{known.c}"))
+            body.borrowed = aliases_of(body.node, name, kind.cls)
+        return Parameter(known.c, kind, True, body.program.declaration(kind, f"*{known.c}"))
     changes = body.bindings.rebound(name) and (is_scalar(kind) or name not in body.anew)
     known.fixed = not body.bindings.rebound(name) or not changes
     if is_scalar(kind):
-        return Parameter(known.c, kind, False, body.program.declared(kind, known.c))
+        return Parameter(known.c, kind, False, body.program.declaration(kind, known.c))
     if isinstance(kind, Array):
         given = known.c
         if changes:
             given = body.names.add(f"{name}_given")
-            body.emit(f"{body.program.declared(kind, known.c)};")
+            body.emit(f"{body.program.declaration(kind, known.c)};")
             put(body, known.place, Value(kind, given, place=True))
             known.parameter = False
-        return Parameter(given, kind, True, f"const {body.program.declared(kind, given)}")
+        return Parameter(given, kind, True, f"const {body.program.declaration(kind, given)}")
     if changes:
-        return Parameter(known.c, kind, False, body.program.declared(kind, known.c))
+        return Parameter(known.c, kind, False, body.program.declaration(kind, known.c))
     known.pointer = True
     if is_store(kind) and body.function in body.program.writers:
         return Parameter(known.c, kind, True, f"{body.program.type_name(kind)} *{known.c}")
-    return Parameter(known.c, kind, True, body.program.pointed(kind, known.c))
+    return Parameter(known.c, kind, True, body.program.pointer_declaration(kind, known.c))
 
 
 def _place_results(body: FunctionBody, made: Instance, result: Kind) -> None:
@@ -149,10 +149,10 @@ def _place_results(body: FunctionBody, made: Instance, result: Kind) -> None:
 
     A variable that is the result on every way lives where the result goes, and lends it its name.
     """
-    if not isinstance(result, Open) and returned_by_value(result):
+    if not isinstance(result, Open) and is_result_by_value(result):
         return
     kinds = result.items if isinstance(result, Mixed) else (result,)
-    names = _returned_names(made.node, len(kinds) if isinstance(result, Mixed) else 0)
+    names = _result_names(made.node, len(kinds) if isinstance(result, Mixed) else 0)
     for number, (kind, name) in enumerate(zip(kinds, names, strict=True)):
         if made.changed is not None and number == made.changed.result:
             body.changed = variable(body, made.changed.name).place
@@ -176,7 +176,7 @@ def _word(kind: Kind) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", kind.cls.__name__).lower()
 
 
-def _returned_names(node: ast.FunctionDef, count: int) -> list[str]:
+def _result_names(node: ast.FunctionDef, count: int) -> list[str]:
     """Return the variable that each item of the result is on every way, or an empty string."""
     values = [item.value for item in ast.walk(node) if isinstance(item, ast.Return)]
     rows = [value.elts if isinstance(value, ast.Tuple) and count else [value] for value in values]
@@ -195,7 +195,7 @@ def _head(program: Program, made: Instance) -> str:
         if isinstance(kind, Open):
             kind = made.result or kind
         if not isinstance(kind, Open):
-            texts.append(program.declared(kind, name if isinstance(kind, Array) else f"*{name}"))
+            texts.append(program.declaration(kind, name if isinstance(kind, Array) else f"*{name}"))
     result = "void" if made.outs or made.changed or made.result is None else program.type_name(made.result)
     inline = (
         "inline "

@@ -8,12 +8,12 @@ import ast
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from fmus.compiler.source.bindings import stored_in
-from fmus.compiler.source.kinds import Kind, Mixed, Struct
+from fmus.compiler.source.bindings import variables_bound
 from fmus.compiler.source.resolve import static
+from fmus.compiler.source.types import Kind, Mixed, Struct
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.signatures import signature
-from fmus.compiler.target.values import returned_by_value
+from fmus.compiler.target.values import is_result_by_value
 
 
 class InPlace(NamedTuple):
@@ -29,12 +29,12 @@ def in_place(program: Program, function: FunctionType) -> InPlace | None:
     """Return the argument of ``function`` that is changed into its result; None if there is none."""
     if function not in program.in_place:
         program.in_place[function] = None  # of a function that calls itself, which is refused
-        program.in_place[function] = _changed(program, function)
+        program.in_place[function] = _find_in_place(program, function)
     found: InPlace | None = program.in_place[function]
     return found
 
 
-def _changed(program: Program, function: FunctionType) -> InPlace | None:
+def _find_in_place(program: Program, function: FunctionType) -> InPlace | None:
     known = signature(program, function)
     results = known.result.items if isinstance(known.result, Mixed) else (known.result,)
     node = program.library.function(function)
@@ -43,14 +43,14 @@ def _changed(program: Program, function: FunctionType) -> InPlace | None:
         if alone:
             found = InPlace(place, name, results.index(kind))
             column = found.result if isinstance(known.result, Mixed) else None
-            made_of_it = name in stored_in(node.body) or _goes_on(program, function, node, name, column)
+            made_of_it = name in variables_bound(node.body) or _goes_on(program, function, node, name, column)
             if made_of_it or _only_updates(program, function, found, column):
                 return found
     return None
 
 
 def _is_large(kind: Kind) -> bool:
-    return isinstance(kind, Struct) and not returned_by_value(kind)
+    return isinstance(kind, Struct) and not is_result_by_value(kind)
 
 
 def _goes_on(program: Program, function: FunctionType, node: ast.FunctionDef, name: str, column: int | None) -> bool:
@@ -59,7 +59,7 @@ def _goes_on(program: Program, function: FunctionType, node: ast.FunctionDef, na
     if column is not None:
         values = [value.elts[column] if isinstance(value, ast.Tuple) and column < len(value.elts) else value
                   for value in values]  # fmt: skip
-    return any(_made_of(program, function, value, name) for value in values)
+    return any(_is_made_of(program, function, value, name) for value in values)
 
 
 def _only_updates(program: Program, function: FunctionType, changed: InPlace, column: int | None) -> bool:
@@ -70,7 +70,7 @@ def _only_updates(program: Program, function: FunctionType, changed: InPlace, co
         node = program.library.function(caller)
         parents = {id(item.value): item for item in ast.walk(node) if isinstance(item, ast.Assign | ast.Return)}
         for call in ast.walk(node):
-            if isinstance(call, ast.Call) and _called(program, caller, call) is function:
+            if isinstance(call, ast.Call) and _callee(program, caller, call) is function:
                 given = _argument(call, changed)
                 if not isinstance(given, ast.Name) or not _replaces(parents.get(id(call)), given.id, node, column):
                     return False
@@ -91,23 +91,23 @@ def _replaces(parent: ast.stmt | None, name: str, node: ast.FunctionDef, column:
     return isinstance(target, ast.Name) and target.id == name
 
 
-def _made_of(program: Program, function: FunctionType, node: ast.expr, name: str) -> bool:
+def _is_made_of(program: Program, function: FunctionType, node: ast.expr, name: str) -> bool:
     """Return whether ``node`` is the variable ``name``, a changed copy of it, or what such a function makes of it."""
     if isinstance(node, ast.IfExp):
-        return any(_made_of(program, function, part, name) for part in (node.body, node.orelse))
+        return any(_is_made_of(program, function, part, name) for part in (node.body, node.orelse))
     if isinstance(node, ast.Name):
         return node.id == name
     if not isinstance(node, ast.Call):
         return False
     if isinstance(node.func, ast.Attribute) and node.func.attr == "_replace":
-        return _made_of(program, function, node.func.value, name)
-    called = _called(program, function, node)
+        return _is_made_of(program, function, node.func.value, name)
+    called = _callee(program, function, node)
     changed = in_place(program, called) if called is not None else None
     given = changed and _argument(node, changed)
     return isinstance(given, ast.Name) and given.id == name
 
 
-def _called(program: Program, function: FunctionType, node: ast.Call) -> FunctionType | None:
+def _callee(program: Program, function: FunctionType, node: ast.Call) -> FunctionType | None:
     local = program.bindings_of(function).local
     found = static(node.func, function.__globals__, local, program.library)
     value: Any = found.value if found is not None else None

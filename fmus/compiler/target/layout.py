@@ -28,7 +28,7 @@ def flat(lines: Sequence[Any]) -> Iterator[str]:
             yield from flat(item)
 
 
-def laid_out(lines: Sequence[str], depth: int = 0) -> list[str]:
+def indent_and_wrap(lines: Sequence[str], depth: int = 0) -> list[str]:
     """Return lines indented by their braces and wrapped; comments and empty lines come as they are."""
     done = []
     for line in lines:
@@ -38,13 +38,13 @@ def laid_out(lines: Sequence[str], depth: int = 0) -> list[str]:
         if line.startswith("}"):
             depth -= 1
         labelled = line.startswith(("case ", "default:"))
-        done += wrapped(line, INDENT * (depth - 1 if labelled else depth))
+        done += wrap_line(line, INDENT * (depth - 1 if labelled else depth))
         if line.endswith("{"):
             depth += 1
     return done
 
 
-def wrapped(line: str, indent: str) -> list[str]:
+def wrap_line(line: str, indent: str) -> list[str]:
     """Return one statement as lines no longer than ``MAX_LINE_LENGTH``."""
     done = []
     rest = indent + line

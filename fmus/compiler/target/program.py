@@ -6,8 +6,11 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.source.bindings import Bindings, bindings
+from fmus.compiler.source.diagnostics import CannotError, Refusal
 from fmus.compiler.source.discovery import Discovery
-from fmus.compiler.source.kinds import (
+from fmus.compiler.source.reading import Library
+from fmus.compiler.source.resolve import Static
+from fmus.compiler.source.types import (
     BOOL,
     FLOAT,
     INT,
@@ -19,15 +22,12 @@ from fmus.compiler.source.kinds import (
     Open,
     Scalar,
     Struct,
-    described,
+    describe,
     fields_of,
     first_modules,
     kind_of_value,
     parts,
 )
-from fmus.compiler.source.reading import Library
-from fmus.compiler.source.refusals import CannotError, Refusal
-from fmus.compiler.source.resolve import Static
 from fmus.compiler.source.writers import Writers
 from fmus.compiler.target import runtime
 from fmus.compiler.target.names import FileNames
@@ -146,7 +146,7 @@ class Program:
             return f"{self._word(kind.item)}{kind.length if isinstance(kind, Array) else ''}"
         return self.types[kind.cls] if isinstance(kind, Struct) else kind.name if isinstance(kind, Scalar) else "tuple"
 
-    def declared(self, kind: Kind, name: str) -> str:
+    def declaration(self, kind: Kind, name: str) -> str:
         """Return the declaration of ``name``: ``double name[3]``."""
         if isinstance(kind, Cells):
             return f"{kind.c} {name}[{kind.length}]"
@@ -156,10 +156,10 @@ class Program:
             kind = kind.item
         return f"{self.type_name(kind)} {name}{dimensions}"
 
-    def pointed(self, kind: Kind, name: str) -> str:
+    def pointer_declaration(self, kind: Kind, name: str) -> str:
         """Return the declaration of a pointer to const: to a struct, or to the first item of an array."""
         if isinstance(kind, Array) and isinstance(kind.item, Array):
-            return "const " + self.declared(kind.item, f"(*{name})").replace(f"{name})[", f"{name})[", 1)
+            return "const " + self.declaration(kind.item, f"(*{name})").replace(f"{name})[", f"{name})[", 1)
         return f"const {self.type_name(kind.item if isinstance(kind, Array) else kind)} *{name}"
 
     def constant(self, found: Static, node: ast.AST) -> Value:
@@ -195,7 +195,7 @@ class Program:
         """Raise ``NoKindError`` unless ``value`` is exactly of ``kind``, all its parts too."""
         if isinstance(kind, Struct):
             if type(value) is not kind.cls:
-                raise NoKindError(f"{value!r}, no {described(kind)}", f"write {described(kind)}(...)")
+                raise NoKindError(f"{value!r}, no {describe(kind)}", f"write {describe(kind)}(...)")
             cls: Any = kind.cls
             for name, part in fields_of(cls).items():
                 self.check_value(part, getattr(value, name))
@@ -204,7 +204,7 @@ class Program:
                 kind.length if isinstance(kind, Array) else len(kind.items) if isinstance(kind, Mixed) else len(value)
             )
             if not isinstance(value, tuple) or len(value) != count:
-                raise NoKindError(f"{value!r}, no {described(kind)}", f"write {described(kind)}")
+                raise NoKindError(f"{value!r}, no {describe(kind)}", f"write {describe(kind)}")
             kinds = kind.items if isinstance(kind, Mixed) else (kind.item,) * count
             for part, item in zip(kinds, value, strict=True):
                 self.check_value(part, item)
@@ -216,7 +216,7 @@ class Program:
         if kind == FLOAT and actual == INT:
             raise NoKindError(f"the int {value}", f"write {float(value)!r}: a float stays a float")
         if kind != actual and (kind, actual) != (INT, BOOL):
-            raise NoKindError(f"{value!r}, no {described(kind)}", f"write a value that is {described(kind)}")
+            raise NoKindError(f"{value!r}, no {describe(kind)}", f"write a value that is {describe(kind)}")
         if actual == INT and not -INT64 <= value < INT64:
             raise NoKindError(f"the integer {value}", "keep integers within 64 bits")
 
@@ -230,7 +230,7 @@ class Program:
                 try:
                     self.check_value(kind, cls._field_defaults[name])
                 except NoKindError as error:
-                    what = f"{cls.__name__}.{name} is {described(kind)}, its default {error.what}"
+                    what = f"{cls.__name__}.{name} is {describe(kind)}, its default {error.what}"
                     self.refuse(cls.__module__, lines.get(name, node), what, error.advice)
 
     def member(self, member: IntEnum) -> Value:

@@ -5,9 +5,9 @@ import typing
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from fmus.compiler.source.kinds import NOTHING, Kind, NoKindError, Struct, kind_of
-from fmus.compiler.source.refusals import AlreadySaidError
+from fmus.compiler.source.diagnostics import AlreadySaidError
 from fmus.compiler.source.resolve import owner_of
+from fmus.compiler.source.types import NOTHING, Kind, NoKindError, Struct, kind_of
 from fmus.compiler.target.program import Program
 
 

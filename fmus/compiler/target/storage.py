@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from fmus.compiler.source.kinds import Array, Scalar, Struct
+from fmus.compiler.source.types import Array, Scalar, Struct
 from fmus.compiler.target.access import Access, access_to, accesses, is_at, overlap
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.layout import flat
@@ -82,23 +82,23 @@ class Assignment:
 
 def _part(body: FunctionBody, place: Place, value: Value) -> Assignment:
     own = access_to(body, place)
-    lines, seen = _written(body, place, value, False)
+    lines, seen = _assignment(body, place, value, False)
     changed = value.base is not None and is_at(body, value.base, place)
     at_once = len(lines) == 1 and _is_store(lines[0], place)
     if not changed and not at_once and any(overlap(own, access) for access in seen):
-        lines, seen = _written(body, place, value, True)
+        lines, seen = _assignment(body, place, value, True)
     return Assignment(place, value, own, lines, seen)
 
 
-def _written(body: FunctionBody, place: Place, value: Value, busy: bool) -> tuple[list[Any], list[Access]]:
+def _assignment(body: FunctionBody, place: Place, value: Value, busy: bool) -> tuple[list[Any], list[Access]]:
     """Return the statements of an assignment, and what they look at."""
     with body.capture() as lines:
         put(body, place, value, busy)
     lines = list(flat(lines))
-    return lines, [access for line in lines for access in _seen(body, line, place)]
+    return lines, [access for line in lines for access in _accesses(body, line, place)]
 
 
-def _seen(body: FunctionBody, line: str, place: Place) -> list[Access]:
+def _accesses(body: FunctionBody, line: str, place: Place) -> list[Access]:
     """Return what a statement looks at; not the place that it writes to, nor the one that is given to a function."""
     if _is_store(line, place):
         left, _, right = line.partition(" = ")
@@ -153,7 +153,7 @@ def start_of(value: Value) -> str | None:
 
 def declare(body: FunctionBody, c: str, value: Value, const: bool) -> None:
     """Write the declaration of a variable with its value."""
-    declared = body.program.declared(value.kind, c)
+    declared = body.program.declaration(value.kind, c)
     start = start_of(value)
     if start is None:
         body.emit(f"{declared};")
@@ -178,7 +178,7 @@ def hoist(body: FunctionBody, value: Value, name: str) -> Value:
     return Value(value.kind, c, place=True, fixed=True, const=known[0], low=known[1], high=known[2])
 
 
-def settled(body: FunctionBody, value: Value, name: str) -> Value:
+def materialise(body: FunctionBody, value: Value, name: str) -> Value:
     """Return ``value`` as something that may be mentioned often and pointed at."""
     if value.place or (is_scalar(value.kind) and value.const is not UNKNOWN):
         return value

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Scalar, Struct, parts
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Kind, Scalar, Struct, parts
 
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUAL, BIT_AND, BIT_XOR, BIT_OR, AND, OR, CHOICE = range(13, 0, -1)
 """How tightly the operators of C bind."""
@@ -209,6 +209,6 @@ def scalars_in(kind: Kind) -> int:
     return 1 if isinstance(kind, Scalar) else sum(scalars_in(part) for part in parts(kind))
 
 
-def returned_by_value(kind: Kind) -> bool:
+def is_result_by_value(kind: Kind) -> bool:
     """Return whether a C function gives a kind as its value; others are written where a pointer says."""
     return isinstance(kind, Scalar) or (isinstance(kind, Struct) and scalars_in(kind) <= MAX_BY_VALUE_SCALARS)

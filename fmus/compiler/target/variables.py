@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from fmus.compiler.source.bindings import Home, Path
-from fmus.compiler.source.kinds import Array, Kind, Open, Struct, described
-from fmus.compiler.source.refusals import AlreadySaidError
+from fmus.compiler.source.diagnostics import AlreadySaidError
+from fmus.compiler.source.types import Array, Kind, Open, Struct, describe
 from fmus.compiler.target.access import accesses, is_at
+from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
-from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import declare, put
 from fmus.compiler.target.values import PRIMARY, UNKNOWN, Place, Value, is_scalar, place_of
 
@@ -83,7 +83,7 @@ def bind(body: FunctionBody, name: str, value: Value, node: ast.AST, source: ast
         known = LocalVariable(slot.text if slot else body.names.add(f"next_{name}"), known.home)
         body.variables[name, ()] = known
     if known.kind is not None:
-        value = coerced(body, value, known.kind, node, f"{name} is {described(known.kind)} before")
+        value = coerce(body, value, known.kind, node, f"{name} is {describe(known.kind)} before")
         _store(body, known, value, name, source)
     elif known.home.loads:
         _first(body, known, name, value)
@@ -127,7 +127,7 @@ def _first(body: FunctionBody, known: LocalVariable, name: str, value: Value) ->
         _borrow(body, known, value)
     elif body.frames[-1].path != known.home.path:
         frame = _frame(body, known.home.path)
-        frame.slot.append(f"{body.program.declared(kind, known.c)};")
+        frame.slot.append(f"{body.program.declaration(kind, known.c)};")
         put(body, known.place, value)
     elif known.once and value.place and value.fixed and not is_scalar(kind):
         _point(body, known, value)
@@ -154,7 +154,7 @@ def _frame(body: FunctionBody, path: Path) -> Any:
 def _point(body: FunctionBody, known: LocalVariable, value: Value) -> None:
     """Write a variable as a pointer to what does not change."""
     text = value.text if isinstance(value.kind, Array) else place_of(value).address
-    body.emit(f"{body.program.pointed(value.kind, known.c)} = {text};")
+    body.emit(f"{body.program.pointer_declaration(value.kind, known.c)} = {text};")
     body.aliases[known.c] = tuple(accesses(body, text))
     known.pointer, known.fixed, known.const = not isinstance(value.kind, Array), True, value.const
 
@@ -162,7 +162,7 @@ def _point(body: FunctionBody, known: LocalVariable, value: Value) -> None:
 def _borrow(body: FunctionBody, known: LocalVariable, value: Value) -> None:
     """Write a variable as a pointer to what it is at first, and will be put back into."""
     place = place_of(value)
-    body.emit(f"{body.program.declared(value.kind, f'*{known.c}')} = {place.address};")
+    body.emit(f"{body.program.declaration(value.kind, f'*{known.c}')} = {place.address};")
     known.pointer = True
     body.aliases[known.c] = tuple(accesses(body, place.text))
 
@@ -188,7 +188,7 @@ def open_place(
     if slot is not None:
         known.c, known.pointer = slot.text, slot.pointer
     else:
-        declared = f"{body.program.declared(kind, known.c)};"
+        declared = f"{body.program.declaration(kind, known.c)};"
         here = body.frames[-1].path == known.home.path
         (body.lines if here else _frame(body, known.home.path).slot).append(declared)
     return known.place

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any
 
-from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Scalar, Struct, fields_of, hints_of, parts
 from fmus.compiler.source.reading import field_meanings, plain
+from fmus.compiler.source.types import Array, Kind, Mixed, Open, Scalar, Struct, fields_of, hints_of, parts
 from fmus.compiler.target.functions import Instance
-from fmus.compiler.target.layout import MAX_LINE_LENGTH, comment, flat, laid_out
+from fmus.compiler.target.layout import MAX_LINE_LENGTH, comment, flat, indent_and_wrap
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Constant, Program
 from fmus.compiler.target.values import INT32, float_text, int_text
@@ -36,16 +36,16 @@ class Writer:
         if not fields_of(cls):
             lines.append(f"    bool {NO_FIELD}; /* C has no struct without members */")
         for field, kind in fields_of(cls).items():
-            line = f"    {self.program.declared(kind, member_name(field))};"
+            line = f"    {self.program.declaration(kind, member_name(field))};"
             note = signal_text(hints_of(cls)[field]) or meanings.get(field, "")
             lines += with_note(line, note)
         lines.append(f"}} {name};")
-        return self._guarded(cls, name, lines) if header else lines
+        return self._include_guard(cls, name, lines) if header else lines
 
-    def mixed(self, kind: Mixed) -> list[str]:
+    def tuple_type(self, kind: Mixed) -> list[str]:
         """Return the C type of a tuple of different kinds."""
         lines = ["", "typedef struct {"]
-        lines += [f"    {self.program.declared(item, f'item{at}')};" for at, item in enumerate(kind.items)]
+        lines += [f"    {self.program.declaration(item, f'item{at}')};" for at, item in enumerate(kind.items)]
         return [*lines, f"}} {self.program.mixed[kind]};"]
 
     def enum(self, cls: type[IntEnum], header: bool) -> list[str]:
@@ -59,9 +59,9 @@ class Writer:
             comma = "" if word == last else ","
             lines += with_note(f"    {name}_{word} = {int(member)}{comma}", meanings.get(word, ""))
         lines.append("};")
-        return self._guarded(cls, name, lines) if header else lines
+        return self._include_guard(cls, name, lines) if header else lines
 
-    def _guarded(self, cls: Any, name: str, lines: list[str]) -> list[str]:
+    def _include_guard(self, cls: Any, name: str, lines: list[str]) -> list[str]:
         """Return a type of modelkit so that the headers of two models may be included in one file."""
         if not cls.__module__.startswith("modelkit."):
             return lines
@@ -141,15 +141,15 @@ class Writer:
             text = self.scalar_text(constant.value)
             if isinstance(constant.value, int) and -INT32 < constant.value < INT32:
                 return [*note, f"enum {{ {constant.name} = {text} }};"]
-            return [*note, f"static const {self.program.declared(constant.kind, constant.name)} = {text};"]
+            return [*note, f"static const {self.program.declaration(constant.kind, constant.name)} = {text};"]
         return [*note, *self.static(constant.kind, constant.name, constant.value)]
 
     def static(self, kind: Kind, name: str, value: Any) -> list[str]:
         """Return the definition of a constant struct or table."""
         first, *others = self.value_lines(kind, value)
-        lines = [f"static const {self.program.declared(kind, name)} = {first}", *others]
+        lines = [f"static const {self.program.declaration(kind, name)} = {first}", *others]
         lines[-1] += ";"
-        return laid_out(lines)
+        return indent_and_wrap(lines)
 
     def chooser(self, cls: Any) -> list[str]:
         """Return the function that chooses a field of a NamedTuple by its index."""
@@ -161,7 +161,7 @@ class Writer:
         for place, field in enumerate(others):
             lines += [f"case {place}:", f"return from->{member_name(field)};"]
         lines += ["default:", f"return from->{member_name(last)};", "}", "}"]
-        return ["", f"/* The field of {cls.__name__} that is at an index. */", *laid_out(lines)]
+        return ["", f"/* The field of {cls.__name__} that is at an index. */", *indent_and_wrap(lines)]
 
     # ---- functions
 
@@ -170,7 +170,7 @@ class Writer:
         text = ast.get_docstring(made.node) or ""
         if made.changed is not None:
             text = f"{text}\n\nChanges ``{made.changed.name}``.".strip()
-        lines = laid_out([made.head, "{", *flat(made.lines), "}"])
+        lines = indent_and_wrap([made.head, "{", *flat(made.lines), "}"])
         return ["", *(comment(text) if text else []), *lines]
 
     def prototypes(self, functions: list[Instance]) -> list[str]:
@@ -182,7 +182,7 @@ class Writer:
                 if called.name not in self.done:
                     self.done.add(called.name)
                     found.append(called)
-        return ["", *(line for made in found for line in laid_out([f"{made.head};"]))] if found else []
+        return ["", *(line for made in found for line in indent_and_wrap([f"{made.head};"]))] if found else []
 
 
 def signal_text(hint: Any) -> str:

@@ -30,7 +30,7 @@ def ssp_scenario(path: Path) -> dict[str, Any]:
 
 def ssp_system(path: Path) -> dict[str, Any]:
     """Return slaves and connections of the .ssp at ``path``, its FMUs unpacked. Raises ``BadInput``."""
-    from fmus.places import DIST
+    from fmus.cache_paths import DIST
 
     system = _read(path)
     folder = DIST / "ssp" / hashlib.sha256(path.read_bytes()).hexdigest()[:24]

@@ -6,10 +6,10 @@
 
 import ast
 
-from fmus.compiler.source.bindings import stored_in
+from fmus.compiler.source.bindings import variables_bound
 
 
-def borrowed(node: ast.FunctionDef, whole: str, cls: type) -> set[str]:
+def aliases_of(node: ast.FunctionDef, whole: str, cls: type) -> set[str]:
     """Return the variables of a function that may stand for a field of its argument ``whole``, a ``cls``."""
     found = set()
     for place, statement in enumerate(node.body):
@@ -37,7 +37,7 @@ class _ArgumentField:
         names = [part for part in parts if isinstance(part, ast.Name) and part.id == self.whole]
         return any(id(part) not in others for part in names)
 
-    def given(self, node: ast.expr) -> ast.expr | None:
+    def value_in(self, node: ast.expr) -> ast.expr | None:
         """Return what ``node``, which makes a new argument, has in the field."""
         if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name) or node.func.id != self.cls.__name__:
             return None
@@ -56,11 +56,11 @@ def _bound(node: ast.stmt, whole: str) -> tuple[str, str]:
 
 def _is_put_back(after: list[ast.stmt], name: str, field: _ArgumentField) -> bool:
     """Return whether the statements put ``name`` back before they look at its field, and leave it alone then."""
-    at = next((place for place, one in enumerate(after) if field.whole in stored_in([one])), None)
-    if at is None or name in stored_in(after[at:]) or field.whole in stored_in(after[at + 1 :]):
+    at = next((place for place, one in enumerate(after) if field.whole in variables_bound([one])), None)
+    if at is None or name in variables_bound(after[at:]) or field.whole in variables_bound(after[at + 1 :]):
         return False
     back = after[at]
     if field.is_seen(after[:at]) or not isinstance(back, ast.Assign) or not isinstance(back.targets[0], ast.Name):
         return False
-    given = field.given(back.value)
+    given = field.value_in(back.value)
     return isinstance(given, ast.Name) and given.id == name

@@ -271,16 +271,16 @@ def kind_of_value(value: Any) -> Kind:
     raise _no_kind(type(value), type(value))
 
 
-def described(kind: Kind) -> str:
+def describe(kind: Kind) -> str:
     """Return a kind in the words of Python."""
     if isinstance(kind, Scalar):
         return kind.name
     if isinstance(kind, Struct):
         return str(kind.cls.__name__)
     if isinstance(kind, Array):
-        return f"a tuple of {kind.length} {described(kind.item)}"
+        return f"a tuple of {kind.length} {describe(kind.item)}"
     if isinstance(kind, Cells):
-        return f"a column of {described(kind.item)}"
+        return f"a column of {describe(kind.item)}"
     if isinstance(kind, Open):
-        return f"tuple[{described(kind.item)}, ...]"
-    return f"tuple[{', '.join(described(item) for item in kind.items)}]"
+        return f"tuple[{describe(kind.item)}, ...]"
+    return f"tuple[{', '.join(describe(item) for item in kind.items)}]"

@@ -19,7 +19,7 @@ def can_write(folder: Path) -> bool:
     return there.is_dir() and os.access(there, os.W_OK)
 
 
-def chosen_folder() -> Path:
+def build_folder() -> Path:
     """Return the folder for everything that is built."""
     named = os.environ.get(VARIABLE)
     if named:
@@ -49,6 +49,6 @@ def _temporary() -> Path:
     return folder
 
 
-DIST = chosen_folder()
+DIST = build_folder()
 LIBRARIES = DIST / "lib"
 CACHE = DIST / "cache"

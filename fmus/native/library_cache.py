@@ -7,25 +7,25 @@ import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from fmus.locks import kept_file
+from fmus.cache_paths import LIBRARIES
+from fmus.locks import cache_file
 from fmus.native.compilers import Compiler, find_compiler
 from fmus.native.platforms import PLATFORMS, CompileTarget, host, host_target
-from fmus.places import LIBRARIES
 
 C_FILES = Path(__file__).parent / "c"
 
 
 def master_library() -> Path:
     """Return the path of the compiled master. Raises ``RuntimeError`` where it cannot be built."""
-    return kept_library("master", "master.c", own_files("master.c", "fmi2.h"))
+    return cache_library("master", "master.c", own_files("master.c", "fmi2.h"))
 
 
 def batch_library() -> Path:
     """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
-    return kept_library("batch", "batch.c", own_files("batch.c", "faults.h", "library.h"))
+    return cache_library("batch", "batch.c", own_files("batch.c", "faults.h", "library.h"))
 
 
-def kept_library(
+def cache_library(
     name: str,
     unit: str,
     files: Mapping[str, str],
@@ -41,15 +41,15 @@ def kept_library(
     compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
     target = target._replace(options=(*target.options, *options))
     key, file = key_of(compiler, target, files), f"{name}{platform.suffix}"
-    return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
+    return cache_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
 
 
 def key_of(compiler: Compiler, target: CompileTarget, files: Mapping[str, str]) -> str:
     """Return digits that depend on all that a library is made of."""
-    return hashlib.sha256("".join((compiler.recipe(target), *told(files))).encode()).hexdigest()[:16]
+    return hashlib.sha256("".join((compiler.recipe(target), *fingerprints(files))).encode()).hexdigest()[:16]
 
 
-def told(files: Mapping[str, str]) -> list[str]:
+def fingerprints(files: Mapping[str, str]) -> list[str]:
     """Return a text for each C file that no other file has."""
     return [f"{file} {len(text)} {text}" for file, text in sorted(files.items())]
 

@@ -6,10 +6,10 @@ from itertools import pairwise
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.contents.arrays import shown_arrays
+from fmus.contents.arrays import visible_arrays
 from fmus.contents.icon import icon
 from fmus.contents.pages import LICENCE, index_page
-from fmus.contents.variables import shown_variables
+from fmus.contents.variables import visible_variables
 from fmus.contents.xml_file import xml_bytes
 from modelkit.model import Model, Terminal
 from modelkit.variables import flatten, variables
@@ -28,7 +28,7 @@ ALL_PORTS = (
 
 def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
     """Return path -> content; ``needs`` is HTML that says what the host must have."""
-    ports = [variable.causality for variable in shown_variables(model)]
+    ports = [variable.causality for variable in visible_variables(model)]
     picture = icon(model.name, ports.count("input"), ports.count("output"))
     return {
         "documentation/index.html": index_page(model, needs, fmi),
@@ -44,9 +44,9 @@ def terminals(model: Model, fmi: int = 2) -> bytes:
     Its version is that of the model description: FMI Library refuses an FMU in which the two differ.
     """
     if fmi == 3:
-        ports = {item.name: item.first.causality for item in shown_arrays(model)}
+        ports = {item.name: item.first.causality for item in visible_arrays(model)}
     else:
-        ports = {item.name: item.causality for item in shown_variables(model)}
+        ports = {item.name: item.causality for item in visible_variables(model)}
     root = Element("fmiTerminalsAndIcons", fmiVersion=f"{fmi}.0")
     picture = SubElement(root, "GraphicalRepresentation")
     SubElement(picture, "CoordinateSystem", SQUARE, suggestedScalingFactorTo_mm="0.1")
@@ -92,7 +92,7 @@ def reference_result(model: Model, run: Run = in_python) -> dict[str, bytes]:
     SubElement(
         root, "Related", type="text/csv", source=file, role="result", description="Outputs of the default experiment"
     )
-    outputs = {item.name for item in shown_variables(model) if item.causality == "output"}
+    outputs = {item.name for item in visible_variables(model) if item.causality == "output"}
     kept = [place for place, item in enumerate(variables(model.outputs)) if item.name in outputs]
     lines = [",".join(f'"{name}"' for name in ["time", *(variables(model.outputs)[place].name for place in kept)])]
     lines += [",".join(repr(float(value)) for value in row) for row in _rows(model, kept, run)]

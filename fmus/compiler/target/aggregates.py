@@ -4,11 +4,11 @@ import ast
 from dataclasses import replace
 from typing import Any
 
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
-from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.diagnostics import CannotError
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, describe
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.names import member_name
-from fmus.compiler.target.storage import ONE_BY_ONE, initial, item_of, put, settled
+from fmus.compiler.target.storage import ONE_BY_ONE, initial, item_of, materialise, put
 from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int, literal
 
 
@@ -28,9 +28,9 @@ def tuple_of(body: FunctionBody, items: tuple[Value, ...], kind: Kind | None = N
     return Value(kind, fill=fill, braces=_braces([initial(item) for item in items]), items=items, const=known)
 
 
-def repeated(body: FunctionBody, items: tuple[Value, ...], count: int) -> Value:
+def repeat_items(body: FunctionBody, items: tuple[Value, ...], count: int) -> Value:
     """Return a tuple of ``items``, ``count`` times over; a single one is written by a loop where there are many."""
-    items = tuple(item if item.const is not UNKNOWN else settled(body, item, "item") for item in items)
+    items = tuple(item if item.const is not UNKNOWN else materialise(body, item, "item") for item in items)
     whole = tuple_of(body, items * count)
     if len(items) > 1 or count <= ONE_BY_ONE:
         return whole
@@ -65,7 +65,7 @@ def zero(body: FunctionBody, kind: Kind) -> Value:
         return literal(False if kind == BOOL else 0 if kind == INT else 0.0)
     body.program.need(kind)
     if isinstance(kind, Array):
-        return repeated(body, (zero(body, kind.item),), kind.length)
+        return repeat_items(body, (zero(body, kind.item),), kind.length)
     assert isinstance(kind, Struct | Mixed)
 
     def fill(place: Place) -> None:
@@ -78,7 +78,7 @@ def _braces(texts: list[str | None]) -> str:
     return "" if None in texts else "{" + ", ".join(str(text) for text in texts) + "}"
 
 
-def written_out(body: FunctionBody, constant: Any, kind: Kind) -> Value:
+def spell_out(body: FunctionBody, constant: Any, kind: Kind) -> Value:
     """Return a constant that has no name of its own."""
     if isinstance(kind, Scalar):
         value = body.program.number(constant)
@@ -89,10 +89,10 @@ def written_out(body: FunctionBody, constant: Any, kind: Kind) -> Value:
         if len(cls._field_defaults) == len(cls._fields) and repr(constant) == repr(cls()):
             return Value(kind, body.program.default(cls), place=True, fixed=True, const=constant)
         kinds = body.program.fields(cls, None)
-        fields = {name: written_out(body, getattr(constant, name), part) for name, part in kinds.items()}
+        fields = {name: spell_out(body, getattr(constant, name), part) for name, part in kinds.items()}
         return struct_of(body, kind, fields)
     parts = kind.items if isinstance(kind, Mixed) else (kind.item,) * len(constant)
-    return tuple_of(body, tuple(written_out(body, item, one) for item, one in zip(constant, parts, strict=True)))
+    return tuple_of(body, tuple(spell_out(body, item, one) for item, one in zip(constant, parts, strict=True)))
 
 
 def elements(body: FunctionBody, value: Value) -> tuple[Value, ...]:
@@ -100,11 +100,11 @@ def elements(body: FunctionBody, value: Value) -> tuple[Value, ...]:
     if value.items is not None:
         return value.items
     assert isinstance(value.kind, Array)
-    whole = settled(body, value, "items")
+    whole = materialise(body, value, "items")
     return tuple(item_of(whole, at, known=True) for at in range(value.kind.length))
 
 
-def coerced(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
+def coerce(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
     """Return ``value`` as ``kind``; refuse what Python would not keep apart but C would."""
     if value.kind == kind:
         return value
@@ -114,8 +114,8 @@ def coerced(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: st
         kinds = (kind.item,) * kind.length if isinstance(kind, Array) else kind.items
         if len(kinds) == len(value.items):
             pairs = zip(value.items, kinds, strict=True)
-            return tuple_of(body, tuple(coerced(body, item, one, node, why) for item, one in pairs), kind)
-    raise CannotError(node, f"{described(value.kind)} where {why}", _advice(value, kind))
+            return tuple_of(body, tuple(coerce(body, item, one, node, why) for item, one in pairs), kind)
+    raise CannotError(node, f"{describe(value.kind)} where {why}", _advice(value, kind))
 
 
 def _advice(value: Value, kind: Kind) -> str:
@@ -126,5 +126,5 @@ def _advice(value: Value, kind: Kind) -> str:
     if kind == BOOL and isinstance(value.kind, Scalar):
         return "write a comparison, such as x != 0"
     if isinstance(kind, Array | Open) and isinstance(value.kind, Array) and kind.item == value.kind.item:
-        return f"make it as long as {described(kind)}"
-    return f"make it {described(kind)}"
+        return f"make it as long as {describe(kind)}"
+    return f"make it {describe(kind)}"

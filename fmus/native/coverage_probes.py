@@ -17,10 +17,10 @@ DECIDER = re.compile(r"\(int64_t (\w+),[^;{}]*\bint64_t guards\b[^;{}]*\)\n\{\n"
 """The beginning of a function that takes a state and, later, the guards as bits: it is named so in each chart."""
 
 
-def probed(source: str, charts: Sequence[Chart], first: int) -> str:
+def instrument(source: str, charts: Sequence[Chart], first: int) -> str:
     """Return the C of a model in which each of its charts tells what it decides on, numbered from ``first`` on."""
     numbers = {_file(chart): number for number, chart in enumerate(charts, first)}
-    return "".join(_told(section, numbers.get(_title(section), -1)) for section in SECTION.split(source))
+    return "".join(_probe(section, numbers.get(_title(section), -1)) for section in SECTION.split(source))
 
 
 def _file(chart: Chart) -> str:
@@ -31,5 +31,5 @@ def _title(section: str) -> str:
     return section.split(" ", 3)[2] if section.startswith("/* --------") else ""
 
 
-def _told(section: str, number: int) -> str:
+def _probe(section: str, number: int) -> str:
     return section if number < 0 else DECIDER.sub(rf"\g<0>    live_decides({number}, \1, guards);\n", section)

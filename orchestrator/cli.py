@@ -10,12 +10,14 @@ import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout, suppress
+from importlib.abc import MetaPathFinder
 from os import devnull
 from typing import Any
 
 from orchestrator.commands import COMMANDS
 from orchestrator.text.command_parser import CommandParser
 from orchestrator.text.ends import ended_in_time
+from orchestrator.text.errors import SCARCE_RESOURCES
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
@@ -30,6 +32,9 @@ exit codes: 0 parked or done, 1 judged and not parked, 2 bad input or a place th
 """
 BAD_INPUT, INTERNAL_ERROR = 2, 3
 MIN_ADDRESS_SPACE = 256 << 20
+PACKAGES_THAT_HANG = frozenset({"scipy", "pyarrow"})
+PACKAGE_ADDRESS_SPACE = 1536 << 20
+"""Below it, the native libraries of these packages hang or abort when memory is refused, instead of raising."""
 SCARCE = frozenset({errno.ENOMEM, errno.EMFILE, errno.ENFILE, errno.EAGAIN})
 SCARCE_TEXTS = ("Cannot allocate memory", "cannot allocate memory", "failed to map segment", "can't start new thread")
 SPARING = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
@@ -53,13 +58,23 @@ def _program() -> int:
         if _address_space() < MIN_ADDRESS_SPACE:
             text = f"the limit of memory (ulimit -v) is below the {MIN_ADDRESS_SPACE >> 20} MiB that apa needs"
             return _last_words(text, BAD_INPUT)
+        if _address_space() < PACKAGE_ADDRESS_SPACE:
+            sys.meta_path.insert(0, _RefusePackagesThatHang())
         return _command(sys.argv[1:])
     except (Exception, KeyboardInterrupt) as error:
         if _is_scarce(error):
-            return _last_words("this takes more memory, files or threads than there are", BAD_INPUT)
+            return _last_words(SCARCE_RESOURCES, BAD_INPUT)
         return _last_words(f"internal error, no verdict: {type(error).__name__}: {error}", INTERNAL_ERROR)
     finally:
         gc.freeze()
+
+
+class _RefusePackagesThatHang(MetaPathFinder):
+    """Raise ``MemoryError`` where a package would be imported that hangs when memory is scarce."""
+
+    def find_spec(self, fullname: str, _path: object, _target: object = None) -> None:
+        if fullname in PACKAGES_THAT_HANG:
+            raise MemoryError
 
 
 def _address_space() -> int:

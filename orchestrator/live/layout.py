@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from orchestrator.scenario.load_scenario import slot_layout_of
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.slot_layout import KEY, LayoutOrigin, SlotLayout, scene_of
 from orchestrator.scenario.target_point import as_rear_axle
@@ -25,7 +24,7 @@ def layout_data(scenario: Scenario) -> dict[str, Any] | None:
     None) and, in the frame of the origin, x, y [m] with their derivatives by length and depth. ``sizes``: name, value
     [m] and its derivatives by length and depth.
     """
-    layout = slot_layout_of(scenario)
+    layout = scenario.slot_layout
     if layout is None:
         return None
     here = layout.model_copy(update={"origin": LayoutOrigin()})

@@ -15,7 +15,7 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Parameter, Scenario, Target
-from orchestrator.scenario.slot_layout import KEY, SlotLayout, expand_layouts, layout_of
+from orchestrator.scenario.slot_layout import KEY, expand_layouts, layout_of
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
@@ -24,7 +24,7 @@ from orchestrator.text.quantities import text_or_scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
 NOT_WRITTEN = ("file", "overrides", "unsupported_parameters", "texts")
-FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene", KEY]
+FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
 INHERITED_NOT = ("name", "title", "description", "extends")
 SETS = "--set"
 """Key of the uppermost layer with the words it was made from."""
@@ -77,15 +77,6 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     return _with_parameters(scenario, more).model_copy(update={"controller": _told(scenario)})
 
 
-def slot_layout_of(scenario: Scenario) -> SlotLayout | None:
-    """Return the ``slot_layout`` that a scenario's file, its bases and ``--set`` give; None without one or a file."""
-    path = Path(scenario.file)
-    if not scenario.file or not path.is_file():
-        return None
-    sets = [f"{key}={value}" for key, value in scenario.overrides.items() if key.partition(".")[0] == KEY]
-    return layout_of([*_layers(path, ()), (_set_layer(sets, ()), "--set")])
-
-
 def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
     """Return the system of a scenario, before its FMUs are known; None if it is ours. Raises ``BadInput``."""
     path, _, merged = _read(name, list(sets))
@@ -105,11 +96,12 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     layers.append((_set_layer(sets, slaves), "--set"))
     for content, file in layers:
         _check_keys([key for key in content if key != SETS], file)
+    layout = layout_of(layers)
     layers = expand_layouts(layers)
     merged: dict[str, Any] = {}
     for content, _ in layers:
         merged = merge_nested(merged, {key: _as_mapping(key, content[key]) for key in content if key not in NOT_MERGED})
-    return path, layers, merged
+    return path, layers, merged if layout is None else merged | {KEY: layout}
 
 
 def _in(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:

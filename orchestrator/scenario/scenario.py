@@ -12,6 +12,7 @@ from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.pace import DEFAULTS, DURATION, UNLIMITED, stop_times
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.slot_layout import SlotLayout
 from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import NAME
@@ -107,6 +108,8 @@ class Scenario(_ScenarioPart):
     """Where the car shall stand. The controller is told it, unless `controller.target` tells it something else."""
     slot: Slot | None = None
     """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
+    slot_layout: SlotLayout | None = None
+    """Generates slot, target, neighbours and kerb, so that they move together."""
     system: SystemText | None = None
     """Slaves, connections and roles, where it is not our vehicle and our controller, connected by equal names."""
     obstacles: list[list[tuple[Metres, Metres]]] = []

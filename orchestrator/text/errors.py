@@ -7,6 +7,7 @@ from orchestrator.text.renamed_names import VALUES, new_name
 
 PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes. What was not judged never ends with the first two."""
+SCARCE_RESOURCES = "this takes more memory, files or threads than there are (ulimit -a shows the limits)"
 
 
 MIGRATE = " (apa migrate rewrites files)"

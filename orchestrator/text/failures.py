@@ -14,7 +14,16 @@ from pathlib import Path
 from fmus.installation import missing_package
 from modelkit.states import CannotComposeError
 from orchestrator.text.console import say
-from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, NotRunError, RunError, shown
+from orchestrator.text.errors import (
+    BAD_INPUT,
+    INTERNAL_ERROR,
+    INTERRUPTED,
+    SCARCE_RESOURCES,
+    BadInput,
+    NotRunError,
+    RunError,
+    shown,
+)
 
 REPORT = "please file a bug with that file at the apa-cosim repository"
 WORDS = {
@@ -25,6 +34,7 @@ WORDS = {
     errno.EISDIR: "is a folder, expected a file",
     errno.ENAMETOOLONG: "this name is too long",
     errno.ENOENT: "there is no such file or folder",
+    errno.EMFILE: "too many open files (ulimit -n shows the limit)",
     errno.ELOOP: "too many levels of symbolic links (a cycle)",
 }
 
@@ -42,7 +52,7 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     if isinstance(error, UnicodeEncodeError):
         return BAD_INPUT, f"{shown(error.object)}: contains characters that cannot be encoded, and cannot be written"
     if isinstance(error, MemoryError):
-        return BAD_INPUT, "out of memory"
+        return BAD_INPUT, SCARCE_RESOURCES
     if isinstance(error, ModuleNotFoundError):
         extra = _extra_of(error.name or "")
         if extra:
@@ -72,7 +82,7 @@ def reason_of(error: BaseException) -> str:
         return str(error.args[0]) if error.args else str(error)
     if isinstance(error, OSError):
         return place_of(error)
-    return "out of memory" if isinstance(error, MemoryError) else one_line(error)
+    return SCARCE_RESOURCES if isinstance(error, MemoryError) else one_line(error)
 
 
 def place_of(error: OSError) -> str:

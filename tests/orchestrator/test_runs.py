@@ -11,9 +11,11 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.live.layout import layout_data
 from orchestrator.log.read_log import read_log
 from orchestrator.report.found_runs import find_runs
 from orchestrator.session.provenance import git_commit
+from orchestrator.verdict.logged import logged
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 SHORT = ["run", DEMO, "--fmus", "none", "--no-page", "--set", "stop_time=0.2"]
@@ -88,6 +90,18 @@ def test_a_run_is_repeated_from_its_log_alone(tmp_path: Path, capsys: pytest.Cap
     first, again = read_log(log), read_log(tmp_path / "again" / "run.mcap")
     assert again.parameters == first.parameters
     assert again.info["scenario"] == first.info["scenario"]
+
+
+def test_the_page_of_a_repeated_run_has_the_slot_layout_of_the_log(tmp_path: Path) -> None:
+    layout = ["--set", "slot_layout.length=6.4", "--set", "stop_time=0.1"]
+    assert main(["run", "apa-parallel", *layout, "--fmus", "none", "--out", str(tmp_path / "run"), "-q"]) == 1
+    assert main(["rerun", str(tmp_path / "run"), "-q"]) == 1
+    first, again = (
+        layout_data(logged(read_log(tmp_path / name / "run.mcap")).scenario) for name in ("run", "run-rerun")
+    )
+    assert first == again
+    assert first is not None
+    assert first["start"][0] == 6.4
 
 
 def test_a_run_that_differs_from_its_log_is_code_2(

@@ -18,6 +18,9 @@ ENVIRONMENTS = {
 }
 
 
+STUDY = ["sweep", "guo2015-trial", "--stride", "100"]
+
+
 def ran(words: list[str], folder: Path, limits: dict[str, int]) -> subprocess.CompletedProcess[str]:
     def limit() -> None:
         for name, value in limits.items():
@@ -40,6 +43,17 @@ def test_what_is_scarce_ends_in_one_line(name: str, tmp_path: Path) -> None:
     if done.returncode:
         assert "Traceback" not in done.stderr
         assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are kept by Linux")
+@pytest.mark.parametrize("megabytes", [400, 1_100])
+def test_a_study_neither_hangs_nor_aborts_when_memory_is_scarce(megabytes: int, tmp_path: Path) -> None:
+    """In the native libraries of scipy and Arrow it would do one or the other."""
+    done = ran([*STUDY, "--out", str(tmp_path / "out")], tmp_path, {"RLIMIT_AS": megabytes * 1_000_000})
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "more memory" in done.stderr
 
 
 def test_a_folder_that_is_gone_is_named(tmp_path: Path) -> None:

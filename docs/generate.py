@@ -41,10 +41,11 @@ from orchestrator.scenario.catalogue import collapsed, range_text, start_text, t
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.files import ROOM  # noqa: E402
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names  # noqa: E402
+from orchestrator.scenario.load_scenario import NOT_WRITTEN, load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.models import APART, MODELS, apart_models  # noqa: E402
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
+from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout  # noqa: E402
 from orchestrator.sweep.study.space import Factor  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
@@ -86,10 +87,10 @@ def pages() -> dict[str, str]:
 
 
 def equations_page() -> str:
-    """Return which equation of which paper stands where, read from the docstrings."""
+    """Return the equations of the papers with the files that implement them, read from the docstrings."""
     rows = [[f"{item.paper} ({item.number})", item.where, item.text] for item in equations(ROOT)]
-    head = "# Equations\n\nWhich equation of which paper stands where. What was misprinted is on the papers' pages.\n\n"
-    return head + table(["equation", "file", "what stands there"], rows)
+    head = "# Equations\n\nEquations of the papers and the files that implement them. Misprints: the papers' pages.\n\n"
+    return head + table(["equation", "file", "function"], rows)
 
 
 def figures_page() -> str:
@@ -102,10 +103,10 @@ def figures_page() -> str:
 
 
 def benchmarks_page() -> str:
-    """Return what the benchmarks measured last, and where."""
+    """Return the latest results of the benchmarks with machine, date and commit."""
     head = "`make bench` measures speed and writes `benchmarks/results.tsv`, which this page shows."
     parts = [f"# Benchmarks\n\n{head}\n"]
-    parts.append("On a busy machine it keeps processor times only.\n")
+    parts.append("On a busy machine it records processor times only.\n")
     rows = read_table()
     for benchmark in sorted({row.benchmark for row in rows}):
         found = [row for row in rows if row.benchmark == benchmark]
@@ -155,7 +156,7 @@ def signal_table(items: list[Variable], starts: bool) -> str:
 
 
 def state_table(enum: type[IntEnum]) -> str:
-    """Return a table of the states of a mode; of one made of others, with whose they are and what they mean there."""
+    """Return a table of the states of a mode; of a union of modes, with the origin and meaning of each state."""
     if parts_of(enum) == (enum,):
         return table(["value", "name"], [[str(int(member)), member.name] for member in enum])
     rows = []
@@ -169,7 +170,7 @@ def state_table(enum: type[IntEnum]) -> str:
 
 def charts_page() -> str:
     """Return diagrams of all charts, drawn from the tables that the controller runs."""
-    parts = ["# Charts\n\nDrawn from the transition tables that the controller runs; earlier rows come first.\n"]
+    parts = ["# Charts\n\nDrawn from the transition tables that the controller runs; earlier rows have priority.\n"]
     for module in chart_modules():
         states, guards = enums_of(module)
         summary = (module.__doc__ or module.__name__).strip().splitlines()[0]
@@ -233,7 +234,7 @@ def scenarios_page() -> str:
     """Return the shipped scenarios, cars, sets of limits, and the factors of the studies that disturb everything."""
     shipped = [load_scenario(name) for name in scenario_names()]
     rows = [[f"`{item.name}`", item.title, item.expected_outcome.replace("_", " "), item.source] for item in shipped]
-    parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "what happens", "expected", "source"], rows)]
+    parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "title", "expected", "source"], rows)]
     cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
     for path in sorted((ROOM / "requirements").glob("*.yaml")):
@@ -256,13 +257,17 @@ def factor_row(factor: Factor) -> list[str]:
 
 
 def files_page() -> str:
-    """Return what stands in a scenario, in requirements and in summary.json."""
+    """Return the keys of scenarios, requirements and summary.json."""
     parts = ["# Files\n"]
     written = {
         "Scenario (YAML)": Scenario,
         "Target": Target,
         "Slot": Slot,
-        "Ending": EndCondition,
+        "Slot layout": SlotLayout,
+        "Slot layout: origin": LayoutOrigin,
+        "Slot layout: neighbours": Neighbours,
+        "Slot layout: kerb": LayoutKerb,
+        "Stop condition": EndCondition,
         "Fault": Fault,
         "Requirement (YAML)": Requirement,
         "Window": Window,
@@ -284,18 +289,19 @@ def files_page() -> str:
 
 
 def about(model: type[BaseModel]) -> str:
-    """Return what a class says of itself."""
+    """Return the docstring of a class."""
     return (inspect.getdoc(model) or "").replace("``", "`")
 
 
 def key_rows(model: type[BaseModel]) -> list[list[str]]:
-    """Return (key, type, default, meaning) of what may be written in a file."""
-    texts, unwritten = texts_of(model), ("file", "changed", "unsupported_parameters") if model is Scenario else ()
+    """Return (key, type, default, meaning) of the keys of a file."""
+    texts, unwritten = texts_of(model), NOT_WRITTEN if model is Scenario else ()
+    names = {item.alias: name for name, item in model.model_fields.items() if item.alias}
     rows = []
     for name, item in model.model_json_schema()["properties"].items():
         if name in unwritten:
             continue
-        field = name if name in model.model_fields else f"{name}_"
+        field = names.get(name, name)
         default = item.get("default", "-" if model.model_fields[field].is_required() else "")
         shown = (
             ""
@@ -304,9 +310,9 @@ def key_rows(model: type[BaseModel]) -> list[list[str]]:
             if default != "-"
             else "required"
         )
-        rows.append([f"`{name}`", type_text(item), shown, texts.get(field, "")])
+        rows.append([f"`{name.rstrip('_')}`", type_text(item), shown, texts.get(field, "")])
     if model is Scenario:
-        meaning = "what stands around the car: `boxes` and `kerbs`, with the fields of the vehicle's `scene.*`"
+        meaning = "obstacles that the sensors measure: `boxes` and `kerbs`, with the parameters `vehicle.scene.*`"
         rows.insert([row[0] for row in rows].index("`slot`") + 1, ["`scene`", "object", "", meaning])
         next(row for row in rows if row[0] == "`car`")[1] = "string or object"
     return rows

@@ -27,7 +27,7 @@ EPILOG = """examples:
   apa list parameters steering                 names, defaults, units and ranges
   apa recover runs/guo2015-case4/run.mcap.part
 
-exit codes: 0 parked or done, 1 judged and not parked, 2 bad input or a place that cannot be read or written,
+exit codes: 0 passed or done, 1 evaluated and failed, 2 bad input, or a path that cannot be read or written,
 3 internal error (the traceback is kept in a file), 130 interrupted
 """
 BAD_INPUT, INTERNAL_ERROR = 2, 3

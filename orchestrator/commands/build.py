@@ -14,32 +14,32 @@ if TYPE_CHECKING:
     from fmus.build import Built
 
 EXAMPLES = """examples:
-  apa build                                       both kinds, for apa's own runs
+  apa build                                       both kinds, into the cache of apa run
   apa build --fmus native --out build             build/native/Controller.fmu and Vehicle.fmu
   apa build --fmus native --out build --platform win64,linux64
   apa build --fmi 3 --out build --platform all    build/fmi3/...: FMI 3.0
-  apa build --system apa --out build              build/native/Controller_apa.fmu...: that system alone
-  apa build --fmus native --cc gcc                with this machine's own C compiler
-  apa build --model my_model.py:MODEL --out build     a model of your own: PythonFMU, native FMUs, C library
+  apa build --system apa --out build              build/native/Controller_apa.fmu...: one controller
+  apa build --fmus native --cc gcc                with the C compiler of this machine
+  apa build --model my_model.py:MODEL --out build     your own model: PythonFMU, native FMUs, C library
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("--fmus", choices=KINDS, action="append", help="which kind (default: all that can be built)")
-    parser.add_argument("--fmi", type=int, choices=(2, 3), help="version; 3: native only (default: 2)")
+    parser.add_argument("--fmus", choices=KINDS, action="append", help="kind of FMU (default: all that can be built)")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), help="FMI version; 3: native only (default: 2)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: the cache that apa run uses)")
     parser.add_argument(
-        "--platform", action="append", metavar="NAME,...", help="native FMUs for these, or all (default: this one)"
+        "--platform", action="append", metavar="NAME,...", help="platforms of native FMUs, or all (default: this one)"
     )
     parser.add_argument(
         "--system",
         action="append",
         metavar="NAME,...",
-        help="build an FMU with this controller and its variables only; all: one each (apa list controllers)",
+        help="build one FMU per named controller, with its variables only; or all (apa list controllers)",
     )
     parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
-    parser.add_argument("--model", metavar="FILE.py:NAME", help="a model of your own, in a file or a package's folder")
+    parser.add_argument("--model", metavar="FILE.py:NAME", help="your own model, in a file or in a package")
     parser.add_argument("--json", action="store_true", help="print the list as JSON")
 
 

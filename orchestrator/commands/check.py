@@ -18,15 +18,16 @@ EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630
   apa check run.mcap requirements.yaml house --junit checks.xml
 
-REQUIREMENTS.yaml is a list; each entry has an id, a signal of the run or a number of the summary, one of
-max, min, max_abs and equals, a source, and may have a window:
+REQUIREMENTS.yaml is a list; each entry has an id, a signal of the run or a metric of the summary, one of
+max, min, max_abs and equals, a source, and optionally a window:
   - {id: crawl at Q1, signal: vehicle.speed, max_abs: 2 km/h, window: {phase: TO_Q1}, source: REQ-12}
   - {id: parked in time, signal: controller.phase, equals: PARKED, window: {at: end}, source: REQ-13}
   - {id: slow at first, signal: vehicle.speed, min: -1 m/s, window: {from: 0, to: 2 s}, source: REQ-14}
 
-Whatever they are, the car must not have touched anything, unless its scenario allows that: contact_allowed.
+The requirement that the vehicle has no contact is always added; it is not required if the scenario has
+contact_allowed: true.
 
-exit codes: 0 all required ones met, 1 not, 2 bad input
+exit codes: 0 all required requirements met, 1 one failed, 2 bad input
 """
 MET, MISSED = 0, 1
 

@@ -20,11 +20,11 @@ from orchestrator.text.quantities import number
 EXAMPLES = """examples:
   apa compare reference/run.mcap runs/guo2015-case4/run.mcap
   apa compare A.mcap B.mcap --abs 0.01 --rel 0.02 --time "100 ms" --html overlay.html
-  apa compare A.mcap B.mcap C.mcap --html overlay.html    all on one page, B and C each judged by A
+  apa compare A.mcap B.mcap C.mcap --html overlay.html    all on one page, B and C each compared with A
   apa compare A.mcap B.mcap --signals "vehicle.pose.*" --tolerances tolerances.yaml --json
 
-A value of B may differ from A by max(ABS, REL * |A|), at any moment of A within TIME.
-TOLERANCES.yaml changes this for some signals, the last pattern that fits counts:
+A value of B passes if it is within max(ABS, REL * |A|) of a value of A within TIME before or after.
+TOLERANCES.yaml sets tolerances for single signals; the last matching pattern applies:
   "vehicle.pose.*": {abs: 1 cm, time: 100 ms}
   "*.heading": {abs: 0.5 deg}
 
@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--signals", action="append", metavar="PATTERN", help="compare only these, for example vehicle.pose.*"
     )
-    parser.add_argument("--html", type=Path, metavar="FILE", help="write a page with both cars and all curves")
+    parser.add_argument("--html", type=Path, metavar="FILE", help="write a page with all runs and curves")
     parser.add_argument("--json", action="store_true", help="print the whole comparison as JSON")
 
 

@@ -13,7 +13,7 @@ EXAMPLES = """examples:
   apa completion zsh > ~/.apa-completion && echo 'source ~/.apa-completion' >> ~/.zshrc
   apa completion fish > ~/.config/fish/completions/apa.fish
 
-The words are those of this version: print them again after an update.
+The script contains the commands and names of this version: print it again after an update.
 """
 SHELLS = ("bash", "zsh", "fish")
 

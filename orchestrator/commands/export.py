@@ -7,8 +7,8 @@ FORMATS = {
     "container": "the system as one FMU, for any importer",
     "csv": "a table of all signals",
     "mf4": "ASAM MDF 4",
-    "rerun": "for the Rerun viewer (.rrd)",
-    "ssp": "the system as .ssp, for libcosim, OMSimulator, ecos...",
+    "rerun": "Rerun recording (.rrd)",
+    "ssp": "the system as .ssp, for libcosim, OMSimulator, Ecos",
 }
 """Format -> what it is. Its module has ``EXAMPLES``, ``add_arguments(parser)`` and ``run(arguments) -> exit code``."""
 EXAMPLES = """examples:

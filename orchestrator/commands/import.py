@@ -21,7 +21,7 @@ EXAMPLES = """examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("format", choices=READERS, help="tpcap: a case of the competition TPCAP, in CSV")
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="what to read")
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="files to import")
     parser.add_argument(
         "--out", type=Path, default=Path(), metavar="DIR", help="output folder (default: current folder)"
     )

@@ -20,12 +20,12 @@ from orchestrator.verdict.limit_text import required_text
 
 EXAMPLES = """examples:
   apa list                             scenarios, controllers, cars, requirements, studies
-  apa list parameters steering         parameters with this word in name or meaning
+  apa list parameters steering         parameters with this word in their name or meaning
   apa list parameters "controller.guo2015.*"
   apa list signals odometry --json
   apa list requirements gbt41630
   apa list runs                        runs in runs/, the latest first: time, scenario, changes, outcome
-  apa list runs results --page         the same as a page results/index.html with pictures
+  apa list runs results --page         the same as a page, results/index.html
 """
 KINDS = ("scenarios", "parameters", "signals", "controllers", "requirements", "runs")
 Rows = list[dict[str, Any]]
@@ -38,10 +38,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "pattern",
         nargs="?",
         metavar="PATTERN",
-        help="a word, or a pattern such as vehicle.pose.*; of runs: their folder",
+        help="a word, or a pattern such as vehicle.pose.*; for runs: their folder",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--page", action="store_true", help="of runs: write FOLDER/index.html")
+    parser.add_argument("--page", action="store_true", help="for runs: write FOLDER/index.html")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -13,11 +13,11 @@ from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 
 EXAMPLES = """examples:
   apa live                                                writes live.html: all shipped scenarios
-  apa live guo2015-case4 --out /tmp/drive.html            this one only
+  apa live guo2015-case4 --out /tmp/drive.html            one scenario
   apa live guo2015-case4 --set controller.guo2015.k1=2
-  apa live "valet-*"                                      several on one page, if their controller is one model
+  apa live "valet-*"                                      several scenarios of the same controller FMU
 
-Open the file in a browser: it needs no network and nothing else. `apa run` writes one beside the replay page.
+Open the file in a browser; it needs no network. `apa run` writes one beside the replay page.
 """
 
 

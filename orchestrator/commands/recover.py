@@ -1,4 +1,4 @@
-"""``apa recover``: mend the log of a run that was killed."""
+"""``apa recover``: repair the log of a killed run."""
 
 import argparse
 from pathlib import Path
@@ -14,7 +14,7 @@ EXAMPLES = """examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("file", type=Path, help="a log, usually run.mcap.part")
+    parser.add_argument("file", type=Path, metavar="FILE", help="incomplete or damaged log, usually run.mcap.part")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,7 +14,8 @@ EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 17
   apa replay my-study.parquet --row 17 --fmus native --out /tmp/again
 
-writes DIR/scenario.yaml, a scenario of its own, and what `apa run` writes; says whether the bits are the row's
+writes DIR/scenario.yaml with all values of the row, and the files of `apa run`; reports whether the run is identical
+to the row
 """
 
 

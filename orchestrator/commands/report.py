@@ -19,7 +19,7 @@ EXAMPLES = """examples:
   apa report runs/a runs/b --figure both.svg              both runs overlaid, with a legend
   apa report runs/guo2015-case4 --video case4.mp4 --speed 4 --width 1280
 
-The page plays the run in any browser, offline: top view, curves, states, checks, parameters.
+The page replays the run in any browser, offline: top view, curves, states, checks, parameters.
 """
 
 
@@ -40,15 +40,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="panels or signals (default: %(default)s)",
     )
     figure.add_argument(
-        "--width", metavar="LENGTH", help="of the figure (default: 17cm), or of the video in pixels (default: 1280)"
+        "--width",
+        metavar="LENGTH",
+        help="width of the figure (default: 17cm), or of the video in pixels (default: 1280)",
     )
-    figure.add_argument("--dpi", type=int, default=300, help="of a PNG (default: 300)")
+    figure.add_argument("--dpi", type=int, default=300, help="resolution of a PNG (default: 300)")
     figure.add_argument("--style", default="paper", choices=("paper", "screen"), help="screen: with a grid")
     video = parser.add_argument_group("video")
     video.add_argument(
         "--video", type=Path, metavar="FILE", help="write a video (.mp4 with ffmpeg, .gif) instead of the page"
     )
-    video.add_argument("--speed", type=float, default=1.0, metavar="X", help="simulated time over time (default: 1)")
+    video.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="playback speed over real time (default: 1)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from orchestrator.papers.result import Drive, Driven
 
 EXAMPLES = """examples:
-  apa reproduce guo2015                 the five cases at both steering rates, beside the paper
-  apa reproduce all --json > all.json   every paper, for machines
+  apa reproduce guo2015                 the five cases at both steering rates, compared with the paper
+  apa reproduce all --json > all.json   every paper, as JSON
   apa reproduce hsic --latex > hsic.tex the rows as a table for an article (also --csv, --bibtex)
   apa reproduce hsic --figures figures  the paper's figures as PNG, SVG, PDF and CSV
 
-exit codes: 0 every stated check holds, 1 one does not, 2 bad input
+exit codes: 0 all checks of this project hold, 1 one does not, 2 bad input
 """
 
 
@@ -49,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="write each figure as PNG, SVG and PDF with its data as CSV and the command, and figures.json",
     )
-    parser.add_argument("--dpi", type=int, default=150, help="of the PNGs of --figures (default: 150)")
+    parser.add_argument("--dpi", type=int, default=150, help="resolution of the PNGs of --figures (default: 150)")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -21,8 +21,8 @@ EXAMPLES = """examples:
   apa rerun runs/guo2015-case4/run.mcap --out /tmp/again --no-page
   apa list runs                                    which runs there are, and by which command
 
-The log holds scenario, parameters, seed and the paths and hashes of the FMUs. Exit codes: those of `apa run`, and 2 if
-a signal differs from the log or an FMU has changed since.
+The log contains scenario, parameters, seed, and the paths and hashes of the FMUs. Exit codes: those of `apa run`, and 2
+if a signal differs from the log or an FMU has changed.
 """
 
 ROWS_AT_ONCE = 1 << 18

@@ -26,15 +26,15 @@ EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
   apa sweep guo2015-trial --set vehicle.body=single_track --json
   apa sweep apa-grid --stride 20               each 20th run of the parking assist's grid
-  apa sweep my-study.yaml --resume             go on after Ctrl-C, a kill or a power cut
-  apa sweep my-study.yaml --fmus native        the same table from FMUs, only slower
-  apa sweep my-study.yaml --dask               on a Dask cluster of this machine's own
+  apa sweep my-study.yaml --resume             continue after Ctrl-C, a kill or a power cut
+  apa sweep my-study.yaml --fmus native        the same table from FMUs, slower
+  apa sweep my-study.yaml --dask               on a Dask cluster on this machine
   apa sweep my-study.yaml --dask tcp://10.0.0.5:8786
-  apa sweep guo2015-speed-rate --explain       what compiled code of the study omits
+  apa sweep guo2015-speed-rate --explain       parts of the models that the compiled study omits
   apa replay runs/my-study/my-study.parquet --row 17
 
-A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/studies.md.
-Shipped ones are in `apa list`; some print tables of their own.
+A study names a scenario and the parameters to vary: grid, monte_carlo, latin_hypercube; see docs/studies.md.
+`apa list` lists the shipped studies; some print a table of results.
 """
 MAX_OUTCOMES = 10
 """Rows of the table of outcomes that is printed; the page has twice as many."""
@@ -52,27 +52,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="FMUs of this kind, or none, instead of the compiled batch",
     )
     parser.add_argument(
-        "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: its own local workers, or a scheduler's"
+        "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: local workers, or those of a scheduler"
     )
     parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads or processes (default: all cores)")
     parser.add_argument(
-        "--chunk", type=int, metavar="N", help="runs per part; at most these are lost when the process is killed"
+        "--chunk", type=int, metavar="N", help="runs per chunk; a killed study loses at most the current chunks"
     )
-    parser.add_argument("--figure", type=Path, metavar="FILE", help="write the success map as a PNG, too")
+    parser.add_argument("--figure", type=Path, metavar="FILE", help="also write the success map as a PNG")
     parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="KEY=VALUE",
-        help="as in apa run, for all runs; or the study's own seed and arguments",
+        help="as in apa run, for all runs; also the seed and the arguments of the study",
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="sample N runs: the n of a study's samples")
-    parser.add_argument("--seed", type=int, metavar="S", help="the study's own seed, as --set seed=S")
-    parser.add_argument("--offset", type=int, default=0, metavar="N", help="begin at run N of the study")
-    parser.add_argument("--stride", type=int, default=1, metavar="N", help="only each N-th run of the study")
+    parser.add_argument("--runs", type=int, metavar="N", help="number of samples of the study")
+    parser.add_argument("--seed", type=int, metavar="S", help="random seed of the study")
+    parser.add_argument("--offset", type=int, default=0, metavar="N", help="start at run N of the study")
+    parser.add_argument("--stride", type=int, default=1, metavar="N", help="run only each N-th run of the study")
     parser.add_argument(
-        "--explain", action="store_true", help="print what code made for the study omits of the models; run nothing"
+        "--explain",
+        action="store_true",
+        help="print the parts of the models that the compiled study omits; run nothing",
     )
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--no-page", action="store_true", help="write no result page")

@@ -38,18 +38,16 @@ EXAMPLES = """examples:
   apa test catalogue --out results
   apa test "catalogue/gbt*" --controller their.fmu --junit results/junit.xml
 
-A scenario passes if its outcome is the one it expects and, where that is parked or finished, its required limits
-hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
-and units (one it does not say is taken as meant), or a scenario whose system connects it; parameters it does not
-have are left out and listed, its own are set like any other: --set controller.THEIRS=3. With -j several scenarios
-run at a time, which gains where FMUs run in processes of their own.
+A scenario passes if it has its expected outcome and, for parked and finished, meets its required limits and those of
+--requirements. A third-party FMU needs the variable names, types and units of the FMU that it replaces, or a scenario
+whose key system connects it. A missing unit is assumed to be the SI unit of the variable. Parameters of the scenario
+that the FMU lacks are omitted and listed; parameters of the FMU are set by --set controller.THEIR_GAIN=3.
 
-catalogue is what standards ask of parking: the scenarios that test it are run, and each clause is met, missed or not
-tested; apa test catalogue/gbt41630 is one standard of it.
+apa test catalogue tests clauses of parking standards; apa test catalogue/gbt41630 tests one standard.
 
 writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
-exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, or a place that cannot be written,
-3 an internal error in one of them; JUnit is there from the start, with an error for what has not run
+exit codes: 0 all passed, 1 one failed, 2 a scenario, requirement or FMU that cannot be read, or a path that cannot be
+written, 3 internal error in a scenario; junit.xml exists from the start, with an error for each scenario not yet run
 """
 PASSED, FAILED = 0, 1
 Look = Callable[[Scenario, Files, Recording], None]
@@ -133,7 +131,7 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
 
 
 def _catalogue(arguments: argparse.Namespace) -> int:
-    """Test what standards ask. Returns 0 if nothing is missed."""
+    """Test the catalogue of standards. Returns 0 if no clause is missed."""
     from orchestrator.catalogue.run import Catalogue
 
     other = [word for word in arguments.scenarios if not is_catalogue(word)]

@@ -19,11 +19,11 @@ EXAMPLES = """examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
     add_system_arguments(parser, ".fmu")
-    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="version (default: 2)")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="FMI version (default: 2)")
     parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
-    for name, what in (("parameter", "parameters that it shows"), ("output", "outputs that it shows")):
+    for name, what in (("parameter", "parameters of the FMU"), ("output", "outputs of the FMU")):
         parser.add_argument(f"--{name}", action="append", metavar="PATTERN", help=f"{what} (default: all)")
-    text = "inputs that your tool feeds, beside those that neither vehicle nor controller feeds"
+    text = "further inputs of the FMU, beside those that neither vehicle nor controller provides"
     parser.add_argument("--input", action="append", default=[], metavar="PATTERN", help=text)
 
 

@@ -14,8 +14,7 @@ EXAMPLES = """examples:
   apa export csv runs/guo2015-case4/run.mcap
   apa export csv run.mcap --signals "vehicle.pose.*" --out pose.csv --names
 
-The first row has the names of the signals, the second their units; numbers are written so that reading them
-gives the same bits. --names writes the names of states instead of their numbers.
+The first row has the names of the signals, the second their units. Reading the numbers gives the same bits.
 """
 
 ROWS_AT_ONCE = 1 << 12
@@ -30,8 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
     """Add what every export of a run takes."""
     parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
-    parser.add_argument("--out", type=Path, metavar="FILE", help=f"default: the log's name with {suffix}")
-    parser.add_argument("--signals", action="append", metavar="PATTERN", help="only these, for example vehicle.pose.*")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help=f"output file (default: name of the log with {suffix})"
+    )
+    parser.add_argument(
+        "--signals", action="append", metavar="PATTERN", help="export only these signals, for example vehicle.pose.*"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

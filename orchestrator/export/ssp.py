@@ -16,9 +16,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
     add_system_arguments(parser, ".ssp")
     kind = default_kind()
-    text = "the system has outputs itself; libcosim and Ecos refuse that"
+    text = "declare outputs of the system; libcosim and Ecos refuse them"
     parser.add_argument("--system-outputs", action="store_true", help=text)
-    parser.add_argument("--fmus", choices=KINDS, default=kind, help=f"kind of FMU inside (default: {kind})")
+    parser.add_argument("--fmus", choices=KINDS, default=kind, help=f"kind of FMU (default: {kind})")
 
 
 def add_system_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
@@ -30,9 +30,11 @@ def add_system_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
         action="append",
         default=[],
         metavar="NAME,...",
-        help="native FMUs for these, or all (default: this one)",
+        help="platforms of native FMUs, or all (default: this one)",
     )
-    parser.add_argument("--out", type=Path, metavar="FILE", help=f"default: the scenario's name with {suffix}")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help=f"output file (default: name of the scenario with {suffix})"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""What ends a run before its stop time, and what the controller says then: the only place that names final states."""
+"""The condition that ends a run before its stop time: the only module that names final states of the controller."""
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -8,32 +8,32 @@ from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import NS_PER_SECOND, Seconds, Whole
 
 SPEED = "vehicle.speed"
-"""The signal that tells how fast the car is [m/s]."""
+"""Signal with the speed of the vehicle [m/s]."""
 OPTIONAL = ("FAILED", "TAKEOVER")
-"""States that end a run by default; the modes of others need not have them."""
+"""Default final states; a third-party controller need not have them."""
 State = str | Whole
 """A state of a mode by its name or by its number."""
 
 
 class EndCondition(BaseModel):
-    """A run is over when a mode of the controller has a final value and the car has stood still for a time."""
+    """A run ends when the controller is in a final state and the vehicle has stood still for a time."""
 
     model_config = ConfigDict(extra="forbid")
 
     signal: str = "controller.phase"
-    """The output that says how far the controller is."""
+    """Output with the state of the controller."""
     succeeded: list[State] = Field(default=["PARKED"], min_length=1)
-    """Its states in which the controller says that it has done what it was asked for."""
+    """Final states that report success."""
     failed: list[State] = ["FAILED"]
-    """Its states in which the controller has given up."""
+    """Final states that report failure."""
     ended: list[State] = ["TAKEOVER"]
-    """Its states in which the run is over but neither done nor failed."""
+    """Final states that report neither success nor failure."""
     reason: str = "controller.reason"
-    """The output that says why the controller has given up."""
+    """Output with the reason of a failure."""
     still: float = Field(default=1e-3, gt=0.0, allow_inf_nan=False)
-    """A car not faster than this [m/s] stands."""
+    """Largest speed that counts as standstill [m/s]."""
     standstill: Seconds = 0.5
-    """How long it must stand [s]."""
+    """Required duration of the standstill [s]."""
 
     @property
     def standstill_ns(self) -> int:

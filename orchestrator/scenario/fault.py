@@ -23,21 +23,21 @@ class Fault(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     signal: str
-    """``slave.name`` of an output (its receivers are disturbed) or of an input."""
+    """``component.name`` of an input, or of an output: then all receivers get the disturbed value."""
     kind: Kind
-    """What the receiver sees instead: an old value, a given one, a late one, a noisy one, now and then none."""
+    """Kind of disturbance; the page *Write a scenario* gives the received value of each."""
     start: Seconds = 0.0
-    """From this time on [s]."""
+    """Start of the fault [s]."""
     stop: Until = float("inf")
-    """Until before this time [s]."""
+    """End of the fault [s], exclusive."""
     value: float | str | bool | None = None
-    """override: the value seen instead; a number, ``nan``, a quantity or the name of a state."""
+    """override: received value; a number, ``nan``, a number with unit or the name of a state."""
     delay: Seconds | None = None
-    """delay: age of the value seen [s]."""
+    """delay: age of the received value [s]."""
     sigma: float | str | None = None
-    """noise: standard deviation, in the unit of the signal or with its own."""
+    """noise: standard deviation, in the unit of the signal or with a unit."""
     probability: float = Field(default=1.0, ge=0.0, le=1.0)
-    """dropout: chance that an exchange is lost; the receiver keeps the value before."""
+    """dropout: probability that a sample is lost; the receiver keeps the previous value."""
 
     def check(self, file: object, key: str) -> None:
         """Raise ``BadInput`` if what its kind needs is missing, or its time is empty."""

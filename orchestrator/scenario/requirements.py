@@ -1,4 +1,4 @@
-"""Requirements as data: a signal or a number of the summary, a condition, a window, a limit, a source.
+"""Requirements as data: a signal or a metric of the summary, a condition, a window, a limit, a source.
 
 The limits of a scenario, the shipped sets in ``orchestrator/requirements`` and the files of ``apa check``
 are all lists of these.
@@ -44,7 +44,7 @@ class Occasion(Limited):
     model_config = ConfigDict(extra="forbid")
 
     signal: str
-    """``vehicle.driver_takeover``: a signal of the run."""
+    """Signal of the run, such as ``vehicle.driver_takeover``."""
     max: float | None = None
     """The value is at most this."""
     min: float | None = None
@@ -65,7 +65,7 @@ class Occasion(Limited):
 
 
 class Window(BaseModel):
-    """The part of a run in which a requirement holds; all that is given must hold at once."""
+    """The part of a run in which a requirement applies: the intersection of the given conditions."""
 
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
@@ -74,17 +74,17 @@ class Window(BaseModel):
     to: Seconds | None = None
     """Last instant [s]."""
     phase: list[str] = []
-    """Names of phases of the manoeuvre chart."""
+    """States of the controller (``controller.phase``) in which the requirement applies."""
     at: Literal["end"] | None = None
     """``end``: the last instant only."""
     after: Occasion | None = None
-    """From each instant at which this begins to hold."""
+    """Condition; the window opens each time that it becomes true."""
     delay: Seconds = 0.0
-    """So long [s] after ``after``."""
+    """Delay from ``after`` to the opening of the window [s]."""
     lasting: Seconds | None = None
-    """For so long [s] from then on; by default to the end."""
+    """Duration of the window [s]; by default to the end of the run."""
     if_never: Literal["fail", "pass"] = "fail"
-    """The verdict if the run has no instant in the window."""
+    """Verdict of a run that has no instant in the window."""
 
     @model_validator(mode="before")
     @classmethod
@@ -114,8 +114,8 @@ class Requirement(Limited):
     id: str
     """Name in tables and reports."""
     signal: str
-    """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``manoeuvres``,
-    ``duration``: one number of the summary."""
+    """Signal, such as ``vehicle.speed``, evaluated at every instant of the window; or metric of the summary, such as
+    ``final.lateral_error``, ``manoeuvres``, ``duration``."""
     max: float | None = None
     """The value is at most this."""
     min: float | None = None
@@ -127,15 +127,15 @@ class Requirement(Limited):
     unit: str | None = None
     """SI unit of the limit; taken from the limit's text if that has one."""
     window: Window | None = None
-    """When it holds; by default always."""
+    """Part of the run in which the requirement applies; by default the whole run."""
     ever: bool = False
-    """Met if it holds at one instant of the window; otherwise it has to at all of them."""
+    """If true, one instant of the window must meet the limit; otherwise all must."""
     where: Where | None = None
-    """Asked only of a scenario that has this."""
+    """The requirement applies only to scenarios that have this."""
     source: str
-    """Who asks for it."""
+    """Origin of the requirement, such as a standard and clause."""
     required: bool = True
-    """A run counts as parked, or finished, only if every required one is met."""
+    """If true, a run that violates the requirement is neither `parked` nor `finished`."""
 
     @model_validator(mode="before")
     @classmethod

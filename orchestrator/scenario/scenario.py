@@ -1,4 +1,4 @@
-"""A scenario: what is true (target, slot, scene), what drives, what ends a run, and what it is judged by."""
+"""A scenario: ground truth (target, slot, scene), models, faults, stop condition and requirements of a run."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
@@ -23,19 +23,19 @@ Task = Literal["park", "drive", "open_loop"]
 SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished", "open_loop": "finished"}
 MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished", "open_loop": "not_finished"}
 DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
-"""The outcomes of a run that has done its task."""
+"""Outcomes of a successful run."""
 
 
 PENETRATION = "penetration"
-"""The metric that the rule on contact is about."""
+"""Metric that the requirement on contact limits."""
 CONTACT_FREE = "contact-free"
-"""The shipped set that is asked of every run."""
+"""Shipped set that applies to every run."""
 LEAST_CORNERS = 3
-"""Of a polygon."""
+"""Minimum number of corners of a polygon."""
 LONGEST_STEP = 10.0
-"""Nothing that steers a car exchanges less often [s]."""
+"""Maximum communication step [s]."""
 Parameter = float | int | bool | str
-"""Value of a parameter in SI; a text where the FMU has one."""
+"""Value of a parameter in SI units, or a text."""
 Name = Annotated[str, Field(pattern=NAME, max_length=100)]
 """A name, not a path."""
 
@@ -45,14 +45,14 @@ class _ScenarioPart(BaseModel):
 
 
 class Target(_ScenarioPart):
-    """Where the car shall stand: the midpoint of its rear axle [m], and its heading [rad]."""
+    """Required final pose of the vehicle, by the midpoint of its rear axle."""
 
     x: Metres
-    """Of the midpoint of its rear axle [m]."""
+    """x of the rear-axle midpoint [m]."""
     y: Metres
-    """Of the midpoint of its rear axle [m]."""
+    """y of the rear-axle midpoint [m]."""
     heading: Radians = 0.0
-    """How it shall stand [rad]."""
+    """Heading of the vehicle [rad]."""
 
     @property
     def pose(self) -> tuple[float, float, float]:
@@ -61,91 +61,91 @@ class Target(_ScenarioPart):
 
 
 class Slot(_ScenarioPart):
-    """The slot as a rectangle; x and y are its middle, its length lies along its heading."""
+    """The slot: a rectangle with its centre at (x, y) and its length along its heading."""
 
     x: Metres
-    """Its middle [m]."""
+    """x of the centre [m]."""
     y: Metres
-    """Its middle [m]."""
+    """y of the centre [m]."""
     heading: Radians = 0.0
-    """Direction of its length [rad]."""
+    """Direction of the length [rad]."""
     length: Annotated[Metres, Field(gt=0.0)]
-    """Along its heading [m]."""
+    """Size along the heading [m]."""
     width: Annotated[Metres, Field(gt=0.0)]
-    """Across it [m]."""
+    """Size perpendicular to the heading [m]."""
 
 
 class Scenario(_ScenarioPart):
-    """A scenario with its base, car and ``--set`` values merged in; parameters by flat name, in SI units."""
+    """A scenario after its ``extends``, its ``car`` and ``--set`` were merged; parameters by flat name, in SI units."""
 
     name: Name
-    """Name of the run and of its folder; by default that of the file."""
+    """Name of the run and of its folder; by default the name of the file."""
     title: str = ""
-    """One line for tables and pages."""
+    """Title in tables and on pages, one line."""
     description: str = ""
-    """What happens, in a few sentences."""
+    """Description of the manoeuvre, a few sentences."""
     source: str = ""
-    """Paper, standard or request it comes from."""
+    """Paper or standard that defines the scenario."""
     extends: str | None = None
-    """Shipped scenario, or file beside this one, that says all that this one does not."""
+    """Shipped scenario, or file beside this one, whose keys apply unless this scenario has them."""
     car: str | None = None
-    """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
+    """Shipped car, file, or mapping with `extends` and changes; parameters `car.*` of vehicle and controller."""
     task: Task = "park"
-    """Purpose of the run: `park`; `drive` along a road or out of a slot; `open_loop`: to its stop time."""
+    """Purpose of the run: `park`; `drive` along a road or out of a slot; `open_loop`: run to the stop time."""
     stop_time: Seconds | None = None
-    """When the run ends at the latest [s]; if not said, 5 s more than the controller's ``limit.duration``."""
+    """Latest end of the run [s]; by default 5 s after the time limit of the controller, ``limit.duration``."""
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
     decimation: dict[str, int] = {}
-    """Decimation: the slave is stepped every n-th communication step."""
+    """Decimation by component: the component is stepped at every n-th communication step."""
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
-    """Of faults, and of every parameter called seed that the scenario does not set."""
+    """Random seed of faults, and of every parameter named seed that the scenario does not set."""
     vehicle: dict[str, float | int | bool] = {}
     """Parameters of the vehicle, nested or by flat name, with or without unit."""
     controller: dict[str, float | int | bool] = {}
-    """Parameters of the controller."""
+    """Parameters of the controller, written like those of the vehicle."""
     target: Target | None = None
-    """Where the car shall stand. The controller is told it, unless `controller.target` tells it something else."""
+    """Required final pose of the vehicle. The controller receives it unless `controller.target` gives another pose."""
     slot: Slot | None = None
-    """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
+    """True slot: its boundary limits the vehicle's outline. The key `scene` holds the obstacles around it."""
     slot_layout: SlotLayout | None = None
-    """Generates slot, target, neighbours and kerb, so that they move together."""
+    """Generates `slot`, `target`, neighbours and kerb from a few dimensions."""
     system: SystemText | None = None
-    """Slaves, connections and roles, where it is not our vehicle and our controller, connected by equal names."""
+    """Components, connections and roles of a system that contains third-party FMUs."""
     obstacles: list[list[tuple[Metres, Metres]]] = []
-    """Things that stand there, convex or not, each by its corners [m]. The valet is told them as its map."""
+    """Polygons, convex or not, as lists of corners [m]: the map of the valet. The sensors do not measure them."""
     faults: list[Fault] = []
     """Disturbances of signals."""
     requirements: list[Requirement] = []
-    """Requirements, and names of shipped sets of them; by default the set `house`."""
+    """Requirements, and names of shipped sets of requirements; by default the set `house`."""
     contact_allowed: bool = False
-    """Whether a run counts as parked, or finished, though the car touches something in the scene."""
+    """If true, contact with an obstacle does not exclude the outcomes `parked` and `finished`."""
     stop_condition: EndCondition = EndCondition()
-    """What ends the run before its stop time."""
+    """Condition that ends the run before its stop time."""
     expected_outcome: Outcome = "parked"
-    """The outcome this scenario is meant to have; if it says none, that its task is done."""
+    """Outcome with which `apa test` passes; by default `parked`, or `finished` for the other tasks."""
     file: str = ""
-    """Where it came from."""
+    """Path of the scenario file, for messages."""
     unsupported_parameters: list[str] = []
-    """Parameters that somebody else's FMU does not have, so that it is not given them; they stay true all the same."""
+    """Parameters that a third-party FMU lacks. They are not set in the FMU and stay part of the ground truth."""
     texts: dict[str, dict[str, str]] = {}
-    """Parameters of vehicle and controller that are texts, which FMUs of others may have."""
+    """Text parameters of third-party FMUs that replace vehicle or controller."""
     overrides: dict[str, str] = {}
-    """What ``--set`` changed for one run, as it was written."""
+    """Changes by ``--set``, as written on the command line."""
 
     def given(self, slave: str) -> dict[str, Any]:
-        """Return the parameters that a slave is given."""
+        """Return the parameters that are set in a component."""
         own = self.parameters_of(slave)
         return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.unsupported_parameters}
 
     def parameters_of(self, slave: str) -> dict[str, Any]:
-        """Return the parameters that the scenario has for a slave."""
+        """Return the parameters that the scenario has for a component."""
         entry = None if self.system is None else self.system.components.get(slave)
         own = {**getattr(self, slave), **self.texts.get(slave, {})} if slave in MODELS else {}
         return {**(entry.parameters if entry else {}), **own}
 
     def as_written(self) -> dict[str, Any]:
-        """Return what a scenario file says that stands on its own, but for the FMUs that a system names."""
+        """Return the content of an equal scenario file without ``extends`` and ``car``; paths of FMUs remain."""
         unwritten = {"file", "extends", "car", "overrides", "unsupported_parameters", "texts"}
         content = self.model_dump(mode="python", exclude=unwritten, by_alias=True, exclude_none=True)
         for owner, texts in self.texts.items():
@@ -154,7 +154,7 @@ class Scenario(_ScenarioPart):
 
     @property
     def places(self) -> list[str]:
-        """Names of the slaves in their order."""
+        """Names of the components in the order of the system."""
         return list(MODELS) if self.system is None else self.system.places
 
     @property
@@ -174,7 +174,7 @@ class Scenario(_ScenarioPart):
 
     @property
     def longest(self) -> float:
-        """When the run ends at the latest [s]: the stop time, or by the pace of the driver."""
+        """Latest end of the run [s]: the stop time, or the controller's time limit at the speed of the driver."""
         if self.stop_time is not None:
             return self.stop_time
         given = {name: np.array([float(self.vehicle.get(name, start))]) for name, start in DEFAULTS.items()}
@@ -182,7 +182,7 @@ class Scenario(_ScenarioPart):
 
     @property
     def success(self) -> Outcome:
-        """Return the outcome of a run that has done its task."""
+        """Return the outcome of a successful run."""
         return SUCCESS[self.task]
 
     @model_validator(mode="after")
@@ -214,7 +214,7 @@ class Scenario(_ScenarioPart):
 
     @model_validator(mode="after")
     def _parked(self) -> "Scenario":
-        """Add what counts as parked everywhere, unless the limits say it of the same number themselves."""
+        """Add the shipped set `parked`, except requirements on metrics that the scenario limits itself."""
         named = {limit.signal for limit in self.requirements}
         missing = [item for item in shipped_requirements("parked") if item.signal not in named]
         if missing:
@@ -223,7 +223,7 @@ class Scenario(_ScenarioPart):
 
     @model_validator(mode="after")
     def _contact_free(self) -> "Scenario":
-        """Add the rule on contact, whatever the limits are; no limit takes its place."""
+        """Add the requirement on contact; no other requirement replaces it."""
         self.requirements = self._and_contact_free(self.requirements)
         return self
 
@@ -232,12 +232,12 @@ class Scenario(_ScenarioPart):
         return [*(limit for limit in limits if limit.id != rule.id), rule]
 
     def with_requirements(self, limits: Iterable[Requirement]) -> "Scenario":
-        """Return the scenario judged by other limits; the rule on contact stays."""
+        """Return the scenario with other requirements; the requirement on contact stays."""
         return self.model_copy(update={"requirements": self._and_contact_free(list(limits))})
 
     @property
     def contact_rule(self) -> Requirement:
-        """Return the requirement that the car touches nothing; not required where the scenario allows it."""
+        """Return the requirement that the vehicle has no contact; not required if the scenario allows contact."""
         (rule,) = shipped_requirements(CONTACT_FREE)
         if not self.contact_allowed:
             return rule

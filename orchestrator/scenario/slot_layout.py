@@ -33,59 +33,67 @@ class _LayoutPart(BaseModel):
 
 
 class LayoutOrigin(_LayoutPart):
-    """Where the gap begins on the road edge; ``heading`` is the driving direction."""
+    """Start of the gap on the road edge, and the driving direction."""
 
     x: Metres = 0.0
+    """x of the start of the gap [m]."""
     y: Metres = 0.0
+    """y of the start of the gap [m]."""
     heading: Radians = 0.0
+    """Driving direction [rad]."""
 
 
 class Neighbours(_LayoutPart):
-    """The parked cars beside the gap and beyond."""
+    """The parked cars on both sides of the gap."""
 
     which: Literal["both", "first", "second", "none"] = "both"
-    """The first is passed first."""
+    """Side of the gap with parked cars; the vehicle passes the first side first."""
     length: Positive = 4.4
-    """Of each car [m]."""
+    """Length of each car [m]."""
     width: Positive = 1.8
-    """Of each car [m]."""
+    """Width of each car [m]."""
     setback: Metres = 0.0
-    """From the road edge to each car [m]."""
+    """Distance from the road edge to each car [m]."""
 
 
 class LayoutKerb(_LayoutPart):
     """A kerb parallel to the road edge."""
 
     height: Positive = 0.12
-    """[m]"""
+    """Height of the kerb [m]."""
     distance: Metres | None = None
-    """From the road edge [m]; by default the depth of the slot."""
+    """Distance from the road edge [m]; by default the depth of the slot."""
     begin: Metres | None = Field(default=None, alias="from")
-    """Where it begins along the road edge [m]; by default 10 m before the row."""
+    """Start of the kerb along the road edge [m]; by default 10 m before the row of cars."""
     end: Metres | None = Field(default=None, alias="to")
-    """Where it ends [m]; by default 10 m behind the row."""
+    """End of the kerb along the road edge [m]; by default 10 m behind the row of cars."""
 
 
 class SlotLayout(_LayoutPart):
-    """What ``slot_layout`` holds; lengths in m or with a unit, angles in rad or with a unit."""
+    """Generates slot, target, parked cars and kerb; lengths in m or with a unit, angles in rad or with a unit."""
 
     kind: Literal["parallel", "perpendicular", "angled"]
+    """Kind of slot."""
     length: Positive
-    """Of the gap, along the road edge [m]."""
+    """Length of the gap along the road edge [m]."""
     depth: Positive
-    """Of the slot, along a car that stands across the road, across a car that stands along it [m]."""
+    """Depth of the slot: width of a parallel slot, length of a perpendicular or angled slot [m]."""
     angle: Radians | None = None
-    """Of an angled slot: between the driving direction and a car with its nose to the road, 30 to 150 deg."""
+    """angled: angle from the driving direction to a car with its nose to the road, 30 to 150 deg [rad]."""
     nose_in: bool = False
-    """The target has the nose away from the road (perpendicular and angled)."""
+    """perpendicular, angled: if true, the nose of the target points away from the road."""
     side: Literal["right", "left"] = "right"
+    """Side of the road with the slot, in the driving direction."""
     origin: LayoutOrigin = LayoutOrigin()
+    """Start of the gap on the road edge, and driving direction."""
     neighbours: Neighbours = Neighbours()
+    """Parked cars on both sides of the gap."""
     row: Annotated[int, Field(ge=0)] = 0
-    """Cars beyond each neighbour."""
+    """Number of further parked cars beyond each neighbour."""
     row_gap: NotNegative = 0.7
-    """Between the cars of the row [m]."""
+    """Gap between the cars of the row [m]."""
     kerb: LayoutKerb | None = None
+    """Kerb parallel to the road edge; by default none."""
 
     @model_validator(mode="after")
     def _angles(self) -> "SlotLayout":

@@ -28,14 +28,14 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
         type=seconds,
         default=RUN_TIMEOUT,
         metavar="S",
-        help=f"wall-clock limit for all of them together, for each third-party FMU ({RUN_TIMEOUT:g} s)",
+        help=f"wall-clock limit for all calls of a third-party FMU together ({RUN_TIMEOUT:g} s)",
     )
     parser.add_argument(
         "--fmu-memory",
         type=memory,
         default=MEMORY_BYTES,
         metavar="SIZE",
-        help=f"memory of the process of each third-party FMU ({MEMORY_BYTES / 1e9:g} GB)",
+        help=f"memory limit for the process of each third-party FMU ({MEMORY_BYTES / 1e9:g} GB)",
     )
     parser.add_argument(
         "--sandbox",
@@ -52,9 +52,9 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
 def add_output_arguments(parser: argparse.ArgumentParser, default: str) -> None:
     """Add the options that say what is written and where."""
     parser.add_argument("--out", type=Path, metavar="DIR", help=f"output folder (default: {default})")
-    parser.add_argument("--force", action="store_true", help="replace a run that is in that folder")
+    parser.add_argument("--force", action="store_true", help="replace an existing run in the output folder")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
+    parser.add_argument("--no-page", action="store_true", help="write neither figure nor pages")
 
 
 def seconds(text: str) -> float:

@@ -38,7 +38,7 @@ class CommandParser(argparse.ArgumentParser):
         command.add_arguments(self)
         if hasattr(command, "run"):
             self.add_argument("-q", "--quiet", action="store_true", help="print only errors and --json")
-            self.add_argument("--trust", action="store_true", help="trust the code of this file's folder, always")
+            self.add_argument("--trust", action="store_true", help="trust this file's folder permanently")
             self.set_defaults(run=command.run)
 
     def subcommands(self) -> Iterator[tuple[str, "CommandParser"]]:

@@ -24,38 +24,38 @@ TIME_TOLERANCE = 1e-9
 
 
 class Check(BaseModel):
-    """One requirement and how the run stands against it."""
+    """The result of one requirement."""
 
     model_config = ConfigDict(extra="forbid")
 
     id: str
     """Name of the requirement."""
     limit: float
-    """What is asked for [unit]."""
+    """Required limit [unit]."""
     value: float
-    """The worst value, NaN if there is none."""
+    """Value with the smallest margin; NaN if there is none."""
     passed: bool
-    """Whether the limit is kept."""
+    """Whether the run meets the requirement."""
     source: str
-    """Who asks for it."""
+    """Origin of the requirement."""
     unit: str
     """SI unit of value, limit and margin."""
     margin: float
-    """Distance to the limit, negative beyond it."""
+    """Distance to the limit; negative if the limit is violated."""
     required: bool
-    """A run counts as parked only if every required one is met."""
+    """If true, a violation excludes the outcomes `parked` and `finished`."""
     t: float
-    """When the value occurred [s]."""
+    """Time of the value [s]."""
     signal: str
-    """Signal or number of the summary."""
+    """Signal, or metric of the summary."""
     condition: Condition
     """max, min, max_abs or equals."""
     note: str = ""
-    """Name of the state, or why there is no value."""
+    """Name of the state, or reason for a missing value."""
     limit_name: str = ""
-    """Name of the state asked for."""
+    """Name of the required state."""
     evaluated: bool = True
-    """False: the run has nothing to judge by, as an FMU does not put it out; such a check is never passed."""
+    """False if an FMU lacks the output; then `passed` is false."""
 
 
 def judge(requirements: list[Requirement], recording: Recording, facts: Facts, file: str) -> list[Check]:

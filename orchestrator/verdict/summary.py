@@ -1,4 +1,4 @@
-"""summary.json: the promised result of a run, computed from its recording alone.
+"""summary.json: the documented result of a run, computed from its recording alone.
 
 SI units and radians. ``final`` errors are measured in the target's frame: longitudinal along its
 heading, lateral to its left, heading wrapped to (-pi, pi].
@@ -30,120 +30,120 @@ class _Part(BaseModel):
 
 
 class Final(_Part):
-    """Where and how the car stands at the end: the numbers ``final.*`` of a run, NaN for what it does not have."""
+    """Final state of the vehicle, the metrics ``final.*``; NaN where the scenario has no target, slot or kerb."""
 
     x: float
-    """Of the rear-axle midpoint [m]."""
+    """x of the rear-axle midpoint [m]."""
     y: float
-    """Of the rear-axle midpoint [m]."""
+    """y of the rear-axle midpoint [m]."""
     heading: float
-    """[rad]"""
+    """Heading [rad]."""
     lateral_error: float
-    """In the target's frame, to its left [m]."""
+    """Position relative to the target, in its frame: to the left [m]."""
     longitudinal_error: float
-    """In the target's frame, along its heading [m]."""
+    """Position relative to the target, in its frame: along its heading [m]."""
     heading_error: float
-    """Heading minus the target's, wrapped [rad]."""
+    """Heading relative to the target, in (-pi, pi] [rad]."""
     steering_wheel_angle: float
-    """Left positive [rad]."""
+    """Steering-wheel angle, left positive [rad]."""
     speed: float
-    """Reverse negative [m/s]."""
+    """Speed, reverse negative [m/s]."""
     outline_margin: float
-    """Least distance of the outline to the slot's edges, negative where it stands out [m]."""
+    """Smallest distance of the outline to the slot boundary, negative outside the slot [m]."""
     kerb_nearest: float
-    """Distance to the slot's kerb of the nearest tyre beside it [m]."""
+    """Distance from the slot's kerb to the nearest tyre beside it [m]."""
     kerb_farthest: float
-    """Distance to the slot's kerb of the farthest tyre beside it [m]."""
+    """Distance from the slot's kerb to the farthest tyre beside it [m]."""
 
 
 class Event(_Part):
-    """One change of the manoeuvre chart; ``from`` and ``to`` are names of phases."""
+    """One transition of the controller's state (``controller.phase``)."""
 
     t: float
-    """When [s]."""
+    """Time of the transition [s]."""
     from_: str
-    """Phase it leaves."""
+    """State before the transition."""
     to: str
-    """Phase it enters."""
+    """State after the transition."""
     x: float
-    """Where the car is then [m]."""
+    """x of the rear-axle midpoint at that time [m]."""
     y: float
-    """Where the car is then [m]."""
+    """y of the rear-axle midpoint at that time [m]."""
     heading: float
-    """How the car stands then [rad]."""
+    """Heading at that time [rad]."""
 
 
 class FmuUsed(_Part):
-    """One slave of the run."""
+    """One component of the run."""
 
     name: str
-    """Its place in the system."""
+    """Name of the component in the system."""
     kind: str
-    """``python``, ``native``, ``none`` (in process) or ``foreign``: somebody else's."""
+    """``python``, ``native``, ``none`` (in process) or ``foreign`` (third-party FMU)."""
     guid: str
-    """Of the FMU; for a model in process, which it is."""
+    """GUID of the FMU; of a model in process, its name."""
     path: str = ""
-    """Its file; the folder of the sources for a model in process."""
+    """Path of the FMU; of a model in process, the folder of its sources."""
     sha256: str = ""
-    """Hash of that file, or of all sources of the models."""
+    """SHA-256 of that file, or of all sources of the models."""
 
 
 class Started(_Part):
-    """When and how a run was started."""
+    """Time and command of the run."""
 
     time: str = ""
     """UTC, ISO 8601."""
     command: str = ""
     """Command line."""
     folder: str = ""
-    """Where the command was given."""
+    """Working folder of the command."""
     git: str = ""
-    """Commit of the repository there, ``-modified`` behind it if a tracked file differs."""
+    """Commit of the repository in that folder, with ``-modified`` if a tracked file differs."""
 
 
 class Tuned(_Part):
-    """A parameter changed from outside during the run."""
+    """A parameter that a viewer changed during the run."""
 
     t: float
-    """From when on [s]."""
+    """Time of the change [s]."""
     name: str
-    """Of slave and parameter."""
+    """Component and parameter."""
     value: float
-    """What it was set to."""
+    """New value."""
     by: str = ""
-    """By whom."""
+    """Client that changed it."""
 
 
 class Lateness(_Part):
-    """How a run kept to the clock on the wall."""
+    """Lateness of a real-time run against the wall clock."""
 
     exchanges: int
-    """How many there were."""
+    """Number of exchanges."""
     late: int
-    """How many of them were over 1 ms late."""
+    """Number of exchanges that were more than 1 ms late."""
     median: float
-    """Half were later than this [s]."""
+    """Median lateness [s]."""
     percentile_99: float
-    """One in a hundred was later than this [s]."""
+    """99th percentile of the lateness [s]."""
     largest: float
-    """The latest of all [s]."""
+    """Largest lateness [s]."""
     at_end: float
-    """The last one [s]: large, if the run could not keep the pace."""
+    """Lateness of the last exchange [s]; large if the run was slower than real time."""
     tuned: list[Tuned] = []
-    """What was changed meanwhile."""
+    """Parameters changed during the run."""
 
 
 class Summary(_Part):
-    """The whole of summary.json."""
+    """The content of summary.json."""
 
     scenario: str
-    """Its name."""
+    """Name of the scenario."""
     overrides: dict[str, str]
-    """What ``--set`` changed of the scenario."""
+    """Changes of the scenario by ``--set``."""
     outcome: Outcome
-    """How the run came out."""
+    """Outcome of the run."""
     reason: str
-    """Why."""
+    """Reason of the outcome."""
     duration: float
     """Simulated time [s]."""
     manoeuvres: int | None
@@ -153,33 +153,33 @@ class Summary(_Part):
     peak_jerk: float
     """Largest absolute jerk, averaged over a second [m/s3]."""
     penetration: float
-    """Greatest penetration depth of the outline in anything of the scene [m]; 0: no contact."""
+    """Largest penetration depth of the outline in an obstacle [m]; 0: no contact."""
     dry_steering_count: int | None
-    """Standstills in which the steering wheel is turned by more than 5 deg; null if the wheel is not known."""
+    """Standstills with more than 5 deg of steering; null if the steering-wheel angle is unknown."""
     final: Final
-    """Where and how the car stands at the end."""
+    """Final state of the vehicle."""
     events: list[Event]
-    """Changes of the manoeuvre chart."""
+    """Transitions of the controller's state."""
     checks: list[Check]
-    """Requirements and how the run stands against them."""
+    """Results of the requirements."""
     fmus: list[FmuUsed]
-    """What was run."""
+    """Components of the run."""
     wall_time: float
-    """Time it took [s]."""
+    """Wall-clock time of the run [s]."""
     real_time_factor: float
-    """Simulated time over the time it took."""
+    """Simulated time over wall-clock time."""
     seed: int
-    """Of the scenario."""
+    """Random seed of the scenario."""
     versions: dict[str, str]
-    """Of Python, of this project and of what it stands on."""
+    """Versions of Python, of this project and of the packages it uses."""
     started: Started = Started()
-    """When and how it was started."""
+    """Time and command of the run."""
     standing: list[str] = []
-    """What the headline adds: an outline beyond the slot's front or rear boundary, a car far from its target."""
+    """Remarks on the final pose: an outline beyond the slot boundary, a large distance from the target."""
     notes: list[str] = []
-    """What is worth knowing of the verdict: contact, a target that was told wrong, or is not in the log."""
+    """Remarks on the evaluation: contact, a controller with another target, data missing in the log."""
     realtime: Lateness | None = None
-    """How late it was, if it was held to the clock on the wall."""
+    """Lateness of a real-time run; null otherwise."""
 
     @property
     def headline(self) -> str:

@@ -21,6 +21,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout
 from orchestrator.sweep.study.study_file import load_study
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
@@ -160,6 +161,10 @@ def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
         Scenario,
         Target,
         Slot,
+        SlotLayout,
+        LayoutOrigin,
+        Neighbours,
+        LayoutKerb,
         EndCondition,
         Fault,
         Requirement,
@@ -175,7 +180,7 @@ def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
         assert [row[0] for row in rows if not row[3]] == [], model
     keys = {row[0]: row for row in generate.key_rows(Scenario)}
     assert {"`target`", "`scene`", "`task`", "`stop_condition`"} <= keys.keys()
-    assert not {"`file`", "`changed`", "`left_out`"} & keys.keys()
+    assert not {"`file`", "`overrides`", "`texts`", "`unsupported_parameters`"} & keys.keys()
     assert keys["`step`"][2] == "`0.01`"
 
 

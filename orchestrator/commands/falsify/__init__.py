@@ -17,24 +17,28 @@ if TYPE_CHECKING:
     from orchestrator.falsification.subject import Subject
 
 EXAMPLES = """examples:
-  apa falsify apa-world                              what makes the parking assist touch something?
+  apa falsify apa-world                              search for contact of the parking assist
   apa falsify apa-world --requirement claim --budget 5000 --seed 2
   apa falsify my-study.yaml --requirement "final heading"
   apa falsify my-study.yaml --controller their.fmu --budget 300
-  apa falsify apa-world --resume                     go on after Ctrl-C
-  apa falsify --regression runs/falsify-apa-world/counterexamples     run what was found before again
+  apa falsify apa-world --resume                     continue after Ctrl-C
+  apa falsify --regression runs/falsify-apa-world/counterexamples     run known counterexamples again
 
-exit code: 0 nothing found, 1 a run breaks the requirement, 2 bad input, 130 interrupted; see docs/falsification.md.
+exit codes: 0 no violation, 1 a run violates the requirement, 2 bad input, 130 interrupted; see docs/falsification.md
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("study", nargs="?", metavar="STUDY", help="a shipped study, or a YAML file: its ranges")
+    parser.add_argument(
+        "study", nargs="?", metavar="STUDY", help="study whose ranges are searched: a shipped one, or a YAML file"
+    )
     parser.add_argument(
         "--budget", type=int, default=2000, metavar="N", help="approximate number of runs (default: 2000)"
     )
-    parser.add_argument("--requirement", metavar="LIMIT", help="a limit or a set of limits (default: contact)")
+    parser.add_argument(
+        "--requirement", metavar="LIMIT", help="objective, requirement or set of requirements (default: contact)"
+    )
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="random seed (1)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: runs/falsify-STUDY)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted search")

@@ -1,8 +1,8 @@
-"""``apa fmu``: what is to be known of an FMU before it is run."""
+"""``apa fmu``: check an FMU before a run."""
 
 import argparse
 
-ACTIONS = {"check": "what an FMU would be in a system: connected, unconnected, missing for a verdict"}
+ACTIONS = {"check": "report connected and unconnected variables of an FMU, and outputs missing for an evaluation"}
 """Action -> what it does; each is a module of this folder."""
 EXAMPLES = """examples:
   apa fmu check their.fmu

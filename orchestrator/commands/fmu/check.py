@@ -15,7 +15,7 @@ EXAMPLES = """examples:
   apa fmu check their.fmu --as vehicle --json
   apa fmu check gps.fmu --as gps --scenario mine.yaml      in the system of a scenario
 
-exit codes: 0 it can be run and judged, 1 something is missing or ends a run, 2 it is no FMU
+exit codes: 0 the FMU can be run and evaluated, 1 something is missing or prevents a run, 2 the file is not an FMU
 """
 READY, NOT_READY = 0, 1
 PARTS = {
@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check and print. Returns 0 if it can be run and judged, 1 if not."""
+    """Check and print. Returns 0 if the FMU can be run and evaluated, 1 if not."""
     report = check_fmu(arguments.fmu, arguments.place, arguments.scenario, arguments.timeout, not arguments.no_load)
     if arguments.json:
         print(json.dumps(report.plain(), indent=2))
@@ -73,5 +73,5 @@ def _print(report: FmuReport) -> None:
             out.print(f"  {line}", markup=False, soft_wrap=True)
         if len(lines) > MAX_LINES:
             out.print(f"  and {len(lines) - MAX_LINES} more; --json lists all")
-    verdict = "[bold green]can be run and judged[/]" if report.is_ready else "[bold red]not ready[/]"
+    verdict = "[bold green]can be run and evaluated[/]" if report.is_ready else "[bold red]not ready[/]"
     out.print(f"\n{verdict}")

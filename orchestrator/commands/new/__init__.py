@@ -42,13 +42,17 @@ START_RANGE = 0.1
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("kind", choices=KINDS, metavar="KIND", help=", ".join(KINDS))
-    parser.add_argument("name", nargs="?", default="", metavar="NAME", help="of the package or file (that of the FMU)")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="output folder (here)")
+    parser.add_argument(
+        "name", nargs="?", default="", metavar="NAME", help="name of the package or file (default: that of the FMU)"
+    )
+    parser.add_argument(
+        "--out", type=Path, default=Path(), metavar="DIR", help="output folder (default: current folder)"
+    )
     parser.add_argument("--controller", metavar="FMU", help="scenario: a third-party FMU as controller")
     parser.add_argument("--vehicle", metavar="FMU", help="scenario: a third-party FMU as vehicle")
-    parser.add_argument("--fmu", metavar="FMU", help="scenario, ci: a third-party FMU, as what its variables say")
+    parser.add_argument("--fmu", metavar="FMU", help="scenario, ci: a third-party FMU; its variables decide its role")
     parser.add_argument(
-        "--scenario", metavar="NAME|FILE", help="scenario, study: what it begins from; ci: what it runs"
+        "--scenario", metavar="NAME|FILE", help="scenario, study: scenario that it extends; ci: scenario that it runs"
     )
 
 

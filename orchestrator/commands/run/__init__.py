@@ -16,8 +16,8 @@ EXAMPLES = """examples:
   apa run guo2015-case4 --realtime --live
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
-writes DIR/run.mcap, DIR/summary.json, DIR/overview.png, DIR/report.html (the replay) and DIR/live.html (to drive it
-yourself); the first two if it is interrupted
+writes DIR/run.mcap, DIR/summary.json, DIR/overview.png, DIR/report.html (replay page) and DIR/live.html (page to drive
+the models); an interrupted run writes run.mcap and summary.json only
 """
 
 

@@ -1,21 +1,28 @@
 """From a model package to a co-simulation FMU, FMI 2.0 or 3.0, that needs nothing at run time but libc and libm."""
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
+from fmus.contents.archive import DESCRIPTION, archive_bytes, archive_guid, content_guid
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.description3 import ABILITIES as ABILITIES3
 from fmus.contents.description3 import model_description3
 from fmus.contents.fmu_documentation import documentation, reference_result
 from fmus.contents.xml_file import xml_bytes
+from fmus.files import write_whole
+from fmus.locks import kept_file
 from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
 from fmus.native.libraries import in_c
 from fmus.native.platforms import PLATFORMS
 from fmus.native.sources import fmu_sources, unit_name
+from fmus.places import CACHE
 from modelkit.model import Model
+
+CACHED_FMUS = 4
+"""FMUs of a model and FMI version that stay in the cache: built elsewhere, the same content is not compiled again."""
 
 NEEDS = """
 <p>This FMU is machine code for {platforms}, made from the C in its folder <code>sources</code>, which was made from
@@ -56,13 +63,20 @@ def build(
     guid = content_guid({**contents(model, names, "", fmi), **made_by})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
-        files = contents(model, names, guid, fmi)
-        files |= reference_result(model) if model.assembly is None else reference_result(model, in_c)
-        made, frame = binaries(model, names, guid, chosen, fmi)
-        if frame:
-            files[PAGE] = files[PAGE].replace(PLACE_OF_STACK, STACK.format(frame=frame).encode())
-        write_archive(path, files | made)
+        build_archive = partial(archive, model, names, guid, chosen, fmi)
+        cached = kept_file(CACHE, f"{model.name}-fmi{fmi}", guid.strip("{}"), ".fmu", build_archive, CACHED_FMUS)
+        write_whole(path, cached.read_bytes())
     return path
+
+
+def archive(model: Model, platforms: list[str], guid: str, compiler: Compiler, fmi: int = 2) -> bytes:
+    """Return the FMU that answers to ``guid``, compiled. Raises as :func:`build`."""
+    files = contents(model, platforms, guid, fmi)
+    files |= reference_result(model) if model.assembly is None else reference_result(model, in_c)
+    made, frame = binaries(model, platforms, guid, compiler, fmi)
+    if frame:
+        files[PAGE] = files[PAGE].replace(PLACE_OF_STACK, STACK.format(frame=frame).encode())
+    return archive_bytes(files | made)
 
 
 def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dict[str, bytes]:

@@ -24,6 +24,8 @@ OWN_TESTS = (
     "tests/orchestrator/test_viewer_layouts.py",
 )
 """Those that a recipe could break: the structure, the language of models, systems, bad parameters, limits, layouts."""
+COMPILES = "apa build --fmus native"
+"""How a command begins that runs once, for all recipes together; ``apa run`` of a recipe alone compiles nothing."""
 HANGS = 1800.0
 """A command that takes longer hangs [s]; building FMUs beside much other work takes minutes."""
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.S | re.M)
@@ -63,14 +65,21 @@ def test_a_recipe_does_what_it_says(recipe: Recipe, copy: Path) -> None:
     for language, file, text in recipe.edits:
         edit(copy, language, copy / file, text)
     for command in recipe.commands:
-        words, _, comment = command.partition("#")
-        code, output = run_line(copy, words.split())
-        asked, _, wanted = comment.strip().partition(": ")
-        assert code == int(asked.removeprefix("exit ") or 0) if asked.startswith("exit") else code == 0, output
-        assert all(word in output for word in wanted.split(", ")), output
+        if not command.startswith(COMPILES):
+            is_run = command.startswith("apa run") and "--fmus" not in command
+            follow(copy, command, ["--fmus", "none"] if is_run else [])
 
 
-def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
+def follow(copy: Path, command: str, more: list[str]) -> None:
+    """Run a command of a page with ``more`` words; it must do what the page says behind it."""
+    words, _, comment = command.partition("#")
+    code, output = run_line(copy, [*words.split(), *more])
+    asked, _, wanted = comment.strip().partition(": ")
+    assert code == int(asked.removeprefix("exit ") or 0) if asked.startswith("exit") else code == 0, output
+    assert all(word in output for word in wanted.split(", ")), output
+
+
+def test_all_recipes_together_compile_and_pass_the_projects_own_tests(copy: Path) -> None:
     for folder in ("tests", "apa_cosim", "benchmarks"):
         shutil.copytree(ROOT / folder, copy / folder, ignore=LEFT_OUT)
     shutil.copy(ROOT / "pyproject.toml", copy)
@@ -80,6 +89,10 @@ def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
         for command in recipe.commands:
             if command.startswith("python"):  # writes files that are checked in
                 run_line(copy, command.partition("#")[0].split())
+    compiled = [command for recipe in recipes() for command in recipe.commands if command.startswith(COMPILES)]
+    assert compiled
+    for command in (*compiled, "apa run straight --fmus native --no-page # : parked"):
+        follow(copy, command, [])
     code, output = run(copy, ["-n", "0", "-q", "-p", "no:cacheprovider", *OWN_TESTS], "pytest")
     assert code == 0, output
 

@@ -42,6 +42,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.suite", "orchestrator.coverage"),
     ("orchestrator.catalogue",),
     ("orchestrator.sweep",),
+    ("orchestrator.identification",),
     ("orchestrator.falsification",),
     ("orchestrator.live",),
     ("orchestrator.export",),

@@ -8,6 +8,7 @@ COMMANDS = {
     "export": "write other formats",
     "fmu": "check compatibility of a third-party FMU",
     "falsify": "falsification: search a study's ranges for violations of a requirement",
+    "identify": "identify parameters of the vehicle from a log",
     "import": "import benchmark scenes as scenarios",
     "list": "list scenarios, parameters, signals, controllers, requirements, runs",
     "live": "write a page that runs the models in the browser",

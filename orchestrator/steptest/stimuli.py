@@ -106,10 +106,8 @@ def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
     try:
         table = read_table(path)
         column = table.column(str(parts["column"]))
-        times = [
-            _in_unit(table, row, table.time, "s", lambda text: number(text, "s")) for row in range(len(table.rows))
-        ]
-        values = _values(table, column, place, parts.get("unit"))
+        times = table_times(table)
+        values = column_values(table, column, place, parts.get("unit"))
     except OSError as error:
         raise place.wrong(f"{path}: cannot be read: {error.strerror}") from error
     except (TableError, UnfitUnitsError) as error:
@@ -123,8 +121,16 @@ def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
     return _along(np.array(times), values, place, t)
 
 
-def _values(table: TextTable, column: int, place: StimulatedInput, written: object) -> list[float]:
-    """Return the numbers of a column in the unit of the input, which the table, or ``unit:``, says. Raises."""
+def table_times(table: TextTable) -> list[float]:
+    """Return the times of all rows [s]. Raises ``TableError``."""
+    return [_in_unit(table, row, table.time, "s", lambda text: number(text, "s")) for row in range(len(table.rows))]
+
+
+def column_values(table: TextTable, column: int, place: StimulatedInput, written: object) -> list[float]:
+    """Return the numbers of a column in the unit of the input, which the table, or ``written``, says.
+
+    Raises ``TableError``, or ``UnfitUnitsError`` for a unit of another quantity.
+    """
     head, taken = table.heads[column], place.variable.signal.unit
     given = head.unit if written is None else unit_symbol(str(written))
     if head.unit not in (None, given):

@@ -11,8 +11,8 @@ from orchestrator.identification.parameter import FitParameter
 from orchestrator.identification.playback import Playback
 from orchestrator.identification.signals import FRAMES, MeasuredDrive
 
-DIFFERENCE = 0.05
-"""Step of the differences, in useful accuracies."""
+DIFFERENCE = 0.25
+"""Step of the differences, in useful accuracies: a lag below the internal step of the model has no effect."""
 
 
 class Problem:

@@ -43,7 +43,10 @@ class ToldCar(NamedTuple):
 
 
 def told_car(said: list[tuple[object, object]], folder: Path) -> ToldCar:
-    """Return the car after all layers of a scenario, each (what it says of the car, its file), lowest first."""
+    """Return the car after all layers of a scenario, each (what it says of the car, its file), lowest first.
+
+    A relative path is beside the file that says it; on the command line it is here, else in ``folder``.
+    """
     car = ToldCar(None, {})
     for given, file in said:
         if given is None:
@@ -54,7 +57,8 @@ def told_car(said: list[tuple[object, object]], folder: Path) -> ToldCar:
         changes = {BASE: given} if isinstance(given, str) else dict(given)
         base = changes.pop(BASE, None)
         if base is not None:
-            beside = file.parent if isinstance(file, Path) else folder
+            is_here = isinstance(base, str) and Path(base).is_file()
+            beside = file.parent if isinstance(file, Path) else Path() if is_here else folder
             if not isinstance(base, str):
                 raise BadInput(f"{shown(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}")
             car = _car_in(find_file(base, "cars", "car", beside), base)

@@ -107,3 +107,10 @@ def test_a_car_as_parameters() -> None:
     flat = car_parameters(Car(width=1.5))
     assert flat["car.width"] == 1.5
     assert set(flat) == {f"car.{item.name}" for item in variables(Car)}
+
+
+def test_a_car_on_the_command_line_is_a_path_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cars").mkdir()
+    (tmp_path / "cars" / "mine.yaml").write_text("car: {wheelbase: 2.9}\n", encoding="utf-8")
+    assert load_scenario("guo2015-case4", ["car=cars/mine.yaml"]).vehicle["car.wheelbase"] == 2.9

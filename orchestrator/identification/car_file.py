@@ -9,7 +9,7 @@ import yaml
 
 from fmus.files import write_whole
 from orchestrator.identification.compiled_vehicle import PARAMETERS
-from orchestrator.scenario.car import told_car
+from orchestrator.scenario.car import vehicle_definition
 from orchestrator.scenario.flat_names import flatten_section
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import scalar
@@ -31,11 +31,10 @@ def base_car(name: str, settings: Mapping[str, str]) -> BaseCar:
     """Return a car, shipped or of a file, with ``settings`` (``car.wheelbase``: ``2.62``). Raises ``BadInput``."""
     values: dict[str, float] = {}
     if name:
-        car = told_car([(name, None)], Path())
-        for section, file in car.plant:
+        car = vehicle_definition([(name, None)], Path())
+        for section, file in car.layers("vehicle"):
             flat = flatten_section(section.get("vehicle") or {}, PARAMETERS, file=file, key="vehicle")
             values |= {key: float(scalar(value, PARAMETERS[key], file=file)) for key, value in flat.items()}
-        values |= {f"{CAR}{key}": float(str(value)) for key, value in car.told.items()}
     for key, text in settings.items():
         short = key.removeprefix("vehicle.")
         if short not in PARAMETERS:
@@ -51,22 +50,22 @@ def write_car(path: Path, base: BaseCar, identified: Mapping[str, float], source
     values = {**base.values, **identified}
     if any(name.startswith("odometry.") for name in identified):
         values["odometry.ideal"] = 0.0
-    shown = {name: _written(name, value) for name, value in values.items()}
+    shown = {name: _yaml_value(name, value) for name, value in values.items()}
     content: dict[str, Any] = {"title": f"{base.name or 'car'}, identified", "source": source}
     own = {name.removeprefix(CAR): value for name, value in shown.items() if name.startswith(CAR)}
-    content |= {"car": _nested(own)} if own else {}
+    content |= {"car": _sections(own)} if own else {}
     plant = {name: value for name, value in shown.items() if not name.startswith(CAR)}
-    content |= {"vehicle": _nested(plant)} if plant else {}
+    content |= {"vehicle": _sections(plant)} if plant else {}
     write_whole(path, yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=120))
 
 
-def _written(name: str, value: float) -> Any:
+def _yaml_value(name: str, value: float) -> Any:
     variable = PARAMETERS[name]
     states = variable.signal.states
     return states(int(value)).name.lower() if states is not None else variable.kind(value)
 
 
-def _nested(flat: Mapping[str, Any]) -> dict[str, Any]:
+def _sections(flat: Mapping[str, Any]) -> dict[str, Any]:
     """Return sections of flat names; entries of an array become a list if it is complete from the first on."""
     tree: dict[str, Any] = {}
     for name, value in flat.items():

@@ -59,7 +59,7 @@ def estimate(problem: Problem) -> Estimate:
     information = (jacobian * widened[:, None]).T @ (jacobian * widened[:, None])
     white = NORMAL_95 * np.sqrt(np.diag(covariance(information, problem.candidates)))
     weighted = np.concatenate([values / noise[name] for name, values in residuals.items()])
-    half_widths = np.maximum(white, _clustered(problem, jacobian, weighted)).astype(np.float64)
+    half_widths = np.maximum(white, _cluster_half_widths(problem, jacobian, weighted)).astype(np.float64)
     for place, item in enumerate(problem.candidates):
         if item.name == DEAD_TIME:
             half_widths[place] += dead_time_resolution(float(theta[place]))
@@ -74,7 +74,7 @@ def covariance(information: Array, candidates: list[FitParameter]) -> Array:
     return inverse * np.outer(scale, scale)
 
 
-def _clustered(problem: Problem, jacobian: Array, weighted: Array) -> Array:
+def _cluster_half_widths(problem: Problem, jacobian: Array, weighted: Array) -> Array:
     """Return half widths of 95 % from the scores of the windows."""
     from scipy.stats import t as student
 
@@ -109,7 +109,7 @@ def _first_guess(problem: Problem, noise: Mapping[str, float]) -> Array:
         return theta
     starts = np.repeat(theta[None, :], len(DEAD_TIMES), axis=0)
     starts[:, names.index(DEAD_TIME)] = DEAD_TIMES
-    costs = [float((problem.weighted(start, noise) ** 2).sum()) for start in starts]
+    costs = [float((problem.residual_vector(start, noise) ** 2).sum()) for start in starts]
     best: Array = starts[int(np.argmin(costs))]
     return best
 
@@ -122,7 +122,7 @@ def _solution(problem: Problem, theta: Array, noise: Mapping[str, float]) -> Arr
     low, high = np.array([item.bounds for item in problem.candidates]).T
 
     def residuals(point: Array) -> Array:
-        return np.append(problem.weighted(point, noise), (point - starts) / ranges)
+        return np.append(problem.residual_vector(point, noise), (point - starts) / ranges)
 
     def jacobian(point: Array) -> Array:
         return np.vstack([problem.jacobian(point, noise), np.diag(1.0 / ranges)])

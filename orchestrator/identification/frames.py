@@ -15,7 +15,7 @@ from orchestrator.identification.signals import FRAMES, MeasuredDrive
 
 WINDOW_TIME, MIN_WINDOWS, MAX_WINDOWS = 4.0, 6, 40
 """Length of a window [s], as far as there are so many."""
-ITERATIONS = 2
+GAUSS_NEWTON_STEPS = 2
 """Of Gauss-Newton: only the turn is not linear, and it begins close."""
 
 
@@ -43,7 +43,7 @@ class FrameFit:
         self._measured = {name: drive.compared[name].values for name in self._windows}
         self._t = {name: drive.compared[name].t for name in self._windows}
 
-    def moved(self, drive: Simulated, columns: tuple[int, ...], noise: Mapping[str, float]) -> dict[str, Array]:
+    def place(self, drive: Simulated, columns: tuple[int, ...], noise: Mapping[str, float]) -> dict[str, Array]:
         """Return the pose of the model at the samples of the log, window by window moved to it.
 
         ``columns``: where x, y and heading are in the outputs.
@@ -53,9 +53,9 @@ class FrameFit:
         }
         frames = np.zeros((self._count, 3))
         frames[:, 2] = self._first_turn(poses)
-        for _ in range(ITERATIONS):
+        for _ in range(GAUSS_NEWTON_STEPS):
             frames += self._step(poses, frames, noise)
-        return {name: _moved(poses[name], frames[self._windows[name]])[self.names.index(name)] for name in poses}
+        return {name: _move(poses[name], frames[self._windows[name]])[self.names.index(name)] for name in poses}
 
     def _first_turn(self, poses: Mapping[str, list[Array]]) -> Array:
         """Return the turn of each window [rad]: the mean of headings, else between the directions of the drives."""
@@ -83,7 +83,7 @@ class FrameFit:
             x, y, turn = pose[0], pose[1], frames[windows, 2]
             levers = (-np.sin(turn) * x - np.cos(turn) * y, np.cos(turn) * x - np.sin(turn) * y, np.ones(len(x)))
             parts = {2: levers[axis]} if axis == 2 else {axis: np.ones(len(x)), 2: levers[axis]}
-            error = self._measured[name] - _moved(pose, frames[windows])[axis]
+            error = self._measured[name] - _move(pose, frames[windows])[axis]
             for row, first in parts.items():
                 vector[:, row] += weight * np.bincount(windows, first * error, self._count)
                 for column, second in parts.items():
@@ -94,7 +94,7 @@ class FrameFit:
         return change
 
 
-def _moved(pose: list[Array], frame: Array) -> tuple[Array, Array, Array]:
+def _move(pose: list[Array], frame: Array) -> tuple[Array, Array, Array]:
     x, y, heading = pose
     cos, sin = np.cos(frame[:, 2]), np.sin(frame[:, 2])
     return cos * x - sin * y + frame[:, 0], sin * x + cos * y + frame[:, 1], heading + frame[:, 2]

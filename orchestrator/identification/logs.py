@@ -10,7 +10,7 @@ import numpy as np
 from fmus.installation import missing_package
 from orchestrator.cosim.slave import Array
 from orchestrator.identification.compiled_vehicle import SIGNALS
-from orchestrator.identification.signals import USED, MeasuredDrive, Series, measured_drive
+from orchestrator.identification.signals import USED, MeasuredDrive, Series, drive_of
 from orchestrator.log.read_log import read_info, read_log
 from orchestrator.steptest.stimuli import StimulatedInput, column_values, table_times
 from orchestrator.system.units import UnfitUnitsError, conversion
@@ -112,7 +112,7 @@ class _MdfLog(Log):
     def series(self, column: str, signal: str, unit: str | None) -> Series:
         places = self._file.channels_db[column]
         if len(places) > 1:
-            raise BadInput(f"has {len(places)} channels {column}: which one is meant cannot be told", file=self.path)
+            raise BadInput(f"has {len(places)} channels {column}: rename one of them", file=self.path)
         found = self._file.get(column, raw=SIGNALS[signal].kind is not float)
         if found.samples.dtype.kind not in "fiub" or found.samples.ndim != 1:
             raise BadInput(f"channel {column} has no numbers", file=self.path)
@@ -185,13 +185,13 @@ def read_drive(path: Path, columns: Columns) -> MeasuredDrive:
     units = {_column(name, known, "--unit", path): unit for name, unit in columns.units.items()}
     found = {}
     for signal in USED:
-        column = _chosen(signal, known, columns, path)
+        column = _column_for(signal, known, columns, path)
         if column:
-            found[signal] = _checked(log.series(column, signal, units.get(column)), columns.span, path)
+            found[signal] = _check_series(log.series(column, signal, units.get(column)), columns.span, path)
     if not found:
         shown = ", ".join(known[:12])
         raise BadInput(f"has no signal of the vehicle; name them: --column pose.x=COLUMN; it has {shown}", file=path)
-    return measured_drive(found, path)
+    return drive_of(found, path)
 
 
 def _open(path: Path) -> Log:
@@ -204,8 +204,8 @@ def _open(path: Path) -> Log:
     return _OwnLog(path) if read_info(path) else _McapLog(path)
 
 
-def _chosen(signal: str, known: list[str], columns: Columns, path: Path) -> str:
-    """Return the column of a signal: as told, else the one that has its name; empty without one."""
+def _column_for(signal: str, known: list[str], columns: Columns, path: Path) -> str:
+    """Return the column of a signal: as the user says, else the one that has its name; empty without one."""
     if signal in columns.names:
         return _column(columns.names[signal], known, "--column", path)
     return next((name for name in (f"vehicle.{signal}", signal) if name in known), "")
@@ -217,7 +217,7 @@ def _column(name: str, known: list[str], key: str, path: Path) -> str:
     return name
 
 
-def _checked(series: Series, span: tuple[float, float], path: Path) -> Series:
+def _check_series(series: Series, span: tuple[float, float], path: Path) -> Series:
     """Return the samples of the part that is used. Raises ``BadInput`` if they are no measurement."""
     t, values, column = series
     keep = (t >= span[0]) & (t <= span[1]) & np.isfinite(values)

@@ -73,7 +73,7 @@ def has_effect(problem: Problem, theta: Array, place: int) -> bool:
     for choice in MANOEUVRES:
         drive = _drive(problem, choice, tuple(problem.drive.compared))
         planned = Problem(problem.vehicle, drive, problem.candidates, problem.known | {"odometry.ideal": 0.0})
-        if not np.array_equal(planned.simulated(theta).rows, planned.simulated(moved).rows):
+        if not np.array_equal(planned.simulation(theta).rows, planned.simulation(moved).rows):
             return True
     return False
 

@@ -92,10 +92,10 @@ def _recordings(found: Identification, title: str) -> tuple[Recording, Recording
     t = longest.t if len(longest.t) <= MAX_INSTANTS else np.linspace(0.0, drive.duration, MAX_INSTANTS)
     measured = {name: _at(item, t) for name, item in {**drive.followed, **drive.compared}.items()}
     requests = {name: _at(item, t, held=True) for name, item in drive.inputs.items()}
-    simulated = problem.simulated(estimate.theta)
+    simulated = problem.simulation(estimate.theta)
     ours = {name: np.interp(t, simulated.t, simulated.rows[:, OUTPUTS[name]]) for name in measured}
     for frame in drive.frames:
-        ours |= _laid_on_log(found, frame, t)
+        ours |= _place_on_log(found, frame, t)
     residuals = {
         name: np.interp(t, drive.compared[name].t, values)
         for name, values in problem.residuals(estimate.theta, estimate.noise).items()
@@ -130,12 +130,12 @@ def _at(item: Series, t: Array, held: bool = False) -> Array:
     return values
 
 
-def _laid_on_log(found: Identification, frame: str, t: Array) -> dict[str, Array]:
+def _place_on_log(found: Identification, frame: str, t: Array) -> dict[str, Array]:
     """Return a pose of the model with one shift and turn for the whole drive."""
     drive = found.problem.drive
     names = [name for name in FRAMES[frame] if name in drive.compared]
     windows = {name: np.zeros(len(drive.compared[name].t), dtype=np.intp) for name in names}
     fit = FrameFit(frame, drive, windows, 1)
     columns = tuple(OUTPUTS[name] for name in FRAMES[frame])
-    moved = fit.moved(found.problem.simulated(found.estimate.theta), columns, found.estimate.noise)
+    moved = fit.place(found.problem.simulation(found.estimate.theta), columns, found.estimate.noise)
     return {name: np.interp(t, drive.compared[name].t, values) for name, values in moved.items()}

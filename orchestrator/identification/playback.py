@@ -21,15 +21,15 @@ LEAD_TIME = 3.0
 """Time [s] before the drive in which the model reaches speed and wheel angle of a log that begins in motion."""
 AT_REST = {"steering": 1e-2, "speed": 1e-2}
 """Angle [rad] and speed [m/s] below which a log begins at rest, as the model does."""
-UNLIMITED = 1e3
+HIGH_LIMIT = 1e3
 WITHOUT_ACTUATOR = {
     **dict.fromkeys((*STEERING_ACTUATOR, "steering.backlash", "steering.standstill_rate"), 0.0),
-    "car.steering.rate_limit": UNLIMITED,
-    "car.steering.angle_limit": UNLIMITED,
+    "car.steering.rate_limit": HIGH_LIMIT,
+    "car.steering.angle_limit": HIGH_LIMIT,
 }
 WITHOUT_DRIVE = {
-    "drive.acceleration_limit": UNLIMITED,
-    "drive.deceleration_limit": UNLIMITED,
+    "drive.acceleration_limit": HIGH_LIMIT,
+    "drive.deceleration_limit": HIGH_LIMIT,
     "drive.shift_time": 0.0,
 }
 """Parameters of a model that follows a measured steering-wheel angle, or a measured speed."""
@@ -68,7 +68,7 @@ class Playback:
         return sequence._replace(rows=rows)
 
     @property
-    def fixed_parameters(self) -> dict[str, float]:
+    def parameter_overrides(self) -> dict[str, float]:
         """Return the parameters of a model that follows, or whose requests are delayed beforehand."""
         followed = self.drive.followed
         return {
@@ -81,10 +81,10 @@ class Playback:
         """Return the inputs with requests held, and the times [s] of the log that they are for."""
         if delay not in self._sequences:
             self._sequences.clear()
-            self._sequences[delay] = self._held_sequence(delay)
+            self._sequences[delay] = self._hold_requests(delay)
         return self._sequences[delay]
 
-    def _held_sequence(self, delay: float) -> tuple[InputSequence, Array]:
+    def _hold_requests(self, delay: float) -> tuple[InputSequence, Array]:
         t = _instants(self.drive, delay)
         lead = self.lead_ns / 1e9
         count = round(lead / LONGEST_FOLLOWED_STEP)
@@ -93,7 +93,7 @@ class Playback:
         rows = np.zeros((len(at) - 1, len(INPUTS)))
         rows[:, [INPUTS["steering_active"], INPUTS["speed_control_active"]]] = 1.0
         for name, item in self.drive.inputs.items():
-            rows[:, INPUTS[name]] = _held(item, at[:-1] - (delay if name == DELAYED else 0.0))
+            rows[:, INPUTS[name]] = _hold(item, at[:-1] - (delay if name == DELAYED else 0.0))
         return InputSequence(t_ns, rows), at
 
 
@@ -127,7 +127,7 @@ def _changes(item: Series) -> Array:
     return times
 
 
-def _held(item: Series, t: Array) -> Array:
+def _hold(item: Series, t: Array) -> Array:
     places = np.clip(np.searchsorted(item.t, t + 1e-9, side="right") - 1, 0, None)
     values: Array = item.values[places]
     return values

@@ -11,7 +11,7 @@ from orchestrator.identification.parameter import FitParameter
 from orchestrator.identification.playback import Playback
 from orchestrator.identification.signals import FRAMES, MeasuredDrive
 
-DIFFERENCE = 0.25
+DIFFERENCE_STEP = 0.25
 """Step of the differences, in useful accuracies: a lag below the internal step of the model has no effect."""
 
 
@@ -34,7 +34,7 @@ class Problem:
         edges = np.linspace(0.0, drive.duration, self.window_count + 1)[1:-1]
         windows = {name: np.searchsorted(edges, item.t, side="right") for name, item in drive.compared.items()}
         self.windows = np.concatenate(list(windows.values()))
-        """Window of each residual, in the order of :meth:`weighted`."""
+        """Window of each residual, in the order of :meth:`residual_vector`."""
         self._fits = {name: FrameFit(name, drive, windows, self.window_count) for name in drive.frames}
         self._last: tuple[tuple[float, ...], Simulated] | None = None
 
@@ -43,7 +43,7 @@ class Problem:
         named = {item.name: float(value) for item, value in zip(self.candidates, theta, strict=True)}
         return {**self.known, **named}
 
-    def simulated(self, theta: Array) -> Simulated:
+    def simulation(self, theta: Array) -> Simulated:
         """Return the drive of the model with these parameters."""
         key = tuple(float(value) for value in theta)
         if self._last is None or self._last[0] != key:
@@ -53,17 +53,17 @@ class Problem:
     def _simulate(self, theta: Array) -> Simulated:
         parameters = self.parameters(theta)
         inputs = self.playback.inputs(parameters)
-        rows = self.vehicle.outputs({**parameters, **self.playback.fixed_parameters}, inputs)
+        rows = self.vehicle.outputs({**parameters, **self.playback.parameter_overrides}, inputs)
         t_ns = inputs.t_ns - self.playback.lead_ns
         first = int(np.searchsorted(t_ns, 0))
         return Simulated(t_ns[first:] / 1e9, rows[first:])
 
     def outputs(self, theta: Array, noise: Mapping[str, float]) -> dict[str, Array]:
         """Return the outputs that are compared, in the frames of the log, at the times of its samples."""
-        drive = self.simulated(theta)
+        drive = self.simulation(theta)
         found: dict[str, Array] = {}
         for frame, fit in self._fits.items():
-            found |= fit.moved(drive, tuple(OUTPUTS[name] for name in FRAMES[frame]), noise)
+            found |= fit.place(drive, tuple(OUTPUTS[name] for name in FRAMES[frame]), noise)
         for name, item in self.drive.compared.items():
             if name not in found:
                 found[name] = np.interp(item.t, drive.t, drive.rows[:, OUTPUTS[name]])
@@ -73,18 +73,18 @@ class Problem:
         """Return model minus measurement of each compared signal, at the times of its samples [SI]."""
         return {name: values - self.drive.compared[name].values for name, values in self.outputs(theta, noise).items()}
 
-    def weighted(self, theta: Array, noise: Mapping[str, float]) -> Array:
+    def residual_vector(self, theta: Array, noise: Mapping[str, float]) -> Array:
         """Return all residuals over their standard deviations."""
         return np.concatenate([values / noise[name] for name, values in self.residuals(theta, noise).items()])
 
     def jacobian(self, theta: Array, noise: Mapping[str, float]) -> Array:
-        """Return the derivatives of :meth:`weighted` by central differences, one-sided at a bound."""
+        """Return the derivatives of :meth:`residual_vector` by central differences, one-sided at a bound."""
         columns = []
         for number, item in enumerate(self.candidates):
             low, high = theta.copy(), theta.copy()
-            step = DIFFERENCE * item.accuracy
+            step = DIFFERENCE_STEP * item.accuracy
             low[number] = max(theta[number] - step, item.bounds[0])
             high[number] = min(theta[number] + step, item.bounds[1])
-            change = self.weighted(high, noise) - self.weighted(low, noise)
+            change = self.residual_vector(high, noise) - self.residual_vector(low, noise)
             columns.append(change / (high[number] - low[number]))
         return np.column_stack(columns)

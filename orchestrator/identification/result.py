@@ -9,7 +9,7 @@ from orchestrator.identification.parameter import FitParameter
 from orchestrator.identification.problem import Problem
 from orchestrator.identification.signals import unit_of
 
-WHITE = 1.5
+MAX_WHITE_TIME = 1.5
 """Integrated autocorrelation time [samples] up to which residuals count as white."""
 LARGE_DIRECTION_PART = 0.1
 
@@ -110,13 +110,13 @@ def sentence(item: Undetermined) -> str:
         return f"{names}: no effect on any signal of this vehicle (vehicle.body, or what the log has no request for)"
     several = len(item.names) > 1
     what = "only a combination is determined" if several else "the log responds too little"
-    ways = [f"give one by --set {item.names[0]}=VALUE"] if several else []
+    remedies = [f"give one by --set {item.names[0]}=VALUE"] if several else []
     drive = item.manoeuvre or item.further_signals
     if drive:
         more = ", with pose, speed, steering-wheel angle and odometry in the log" if not item.manoeuvre else ""
         widths = ", ".join(f"{name} ± {_digits(width)}" for name, width in item.half_widths.items())
-        ways.append(f"drive {drive}{more} (expected: {widths})")
-    return f"{names}: {what}" + (f"; {', or '.join(ways)}" if ways else "; no manoeuvre known here identifies it")
+        remedies.append(f"drive {drive}{more} (expected: {widths})")
+    return f"{names}: {what}" + (f"; {', or '.join(remedies)}" if remedies else "; no known manoeuvre identifies it")
 
 
 def notes(found: Identification) -> list[str]:
@@ -129,7 +129,7 @@ def notes(found: Identification) -> list[str]:
             both = found.identifiability.identified[row] and found.identifiability.identified[column]
             if both and abs(value) >= HIGH_CORRELATION:
                 lines.append(f"{names[column]} and {name} are correlated: {value:+.3f}")
-    coloured = [name for name, time in found.estimate.correlation_times.items() if time > WHITE]
+    coloured = [name for name, time in found.estimate.correlation_times.items() if time > MAX_WHITE_TIME]
     if coloured:
         lines.append(
             f"residuals are not white ({', '.join(coloured)}): the model lacks something; intervals are widened"
@@ -139,17 +139,17 @@ def notes(found: Identification) -> list[str]:
 
 def value_text(item: ParameterEstimate) -> str:
     """Return a value with as many digits as its interval supports."""
-    return _rounded(item.value, _decimals(item.half_width))
+    return _round_text(item.value, _decimals(item.half_width))
 
 
 def interval_text(item: ParameterEstimate) -> str:
     """Return the 95 % interval."""
     digits = _decimals(item.half_width)
     low, high = item.interval
-    return f"{_rounded(low, digits)} to {_rounded(high, digits)}"
+    return f"{_round_text(low, digits)} to {_round_text(high, digits)}"
 
 
-def _rounded(value: float, digits: int) -> str:
+def _round_text(value: float, digits: int) -> str:
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 

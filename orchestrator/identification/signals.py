@@ -50,7 +50,7 @@ class MeasuredDrive(NamedTuple):
         return [name for name, parts in FRAMES.items() if any(part in self.compared for part in parts)]
 
 
-def measured_drive(series: Mapping[str, Series], file: object) -> MeasuredDrive:
+def drive_of(series: Mapping[str, Series], file: object) -> MeasuredDrive:
     """Return how the signals of a log are used. Raises ``BadInput`` if no drive can be made of them."""
     first = max(item.t[0] for item in series.values())
     last = min((item.t[-1] for name, item in series.items() if name not in REQUESTS), default=first)
@@ -85,7 +85,7 @@ def _follow(
 
 
 def _is_always_on(inputs: Mapping[str, Series], active: str, signals: Mapping[str, Series]) -> bool:
-    """Return whether a control is active whenever the vehicle moves; a log without the flag says so."""
+    """Return whether a control is active whenever the vehicle moves; a log without the flag implies it."""
     if active not in inputs:
         return True
     moves = signals.get("speed", signals.get("measured_speed"))

@@ -42,7 +42,7 @@ class ToldCar(NamedTuple):
         return [*(self.plant if owner == "vehicle" else ()), both]
 
 
-def told_car(said: list[tuple[object, object]], folder: Path) -> ToldCar:
+def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> ToldCar:
     """Return the car after all layers of a scenario, each (what it says of the car, its file), lowest first.
 
     A relative path is beside the file that says it; on the command line it is here, else in ``folder``.

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.car import CAR, Layer, told_car, with_said
+from orchestrator.scenario.car import CAR, Layer, vehicle_definition, with_said
 from orchestrator.scenario.files import find_file, shipped
 from orchestrator.scenario.flat_names import flatten_layer, flatten_section, merge_flat, merge_nested
 from orchestrator.scenario.models import MODELS, models_for
@@ -59,7 +59,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
     merged.setdefault("name", path.stem)
-    car = told_car([(content.get("car"), file) for content, file in layers], path.parent)
+    car = vehicle_definition([(content.get("car"), file) for content, file in layers], path.parent)
     merged["car"] = car.name
     merged["requirements"] = requirements_of(merged.get("requirements", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)

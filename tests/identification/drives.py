@@ -6,7 +6,7 @@ import numpy as np
 
 from orchestrator.cosim.slave import Array
 from orchestrator.identification.compiled_vehicle import INPUTS, OUTPUTS, CompiledVehicle, InputSequence
-from orchestrator.identification.signals import MeasuredDrive, Series, measured_drive
+from orchestrator.identification.signals import MeasuredDrive, Series, drive_of
 
 STEP = 0.01
 RANGES = {
@@ -60,7 +60,7 @@ def pair(seed: int, vehicle: CompiledVehicle) -> Pair:
         log = measurements_only(log, true)
     if kind == "mass":
         log = {name: item for name, item in log.items() if not name.startswith(("odometry", "measured"))}
-    return Pair(true, measured_drive(log, "log"), names, known)
+    return Pair(true, drive_of(log, "log"), names, known)
 
 
 def random_drive(random: np.random.Generator, largest: float = 8.0) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ from orchestrator.identification.identify import identify
 from orchestrator.identification.parameter import ODOMETRY
 from orchestrator.identification.playback import dead_time_resolution
 from orchestrator.identification.result import Identification, as_json, sentence
-from orchestrator.identification.signals import MeasuredDrive, Series, measured_drive
+from orchestrator.identification.signals import MeasuredDrive, Series, drive_of
 from orchestrator.text.errors import BadInput
 from tests.identification.drives import STEP, measurements_only, pair, random_drive, simulated_log
 
@@ -62,7 +62,7 @@ def gentle(vehicle: CompiledVehicle, car: dict[str, float] = CAR) -> MeasuredDri
     """Return measurements of a drive that turns the wheel little: tan is straight there."""
     random = np.random.default_rng(47)
     log = simulated_log(car, random_drive(random, largest=2.0), random, vehicle)
-    return measured_drive(measurements_only(log, car), "log")
+    return drive_of(measurements_only(log, car), "log")
 
 
 def test_ratio_and_wheelbase_of_small_angles_are_named_and_have_no_value(vehicle: CompiledVehicle) -> None:
@@ -91,7 +91,7 @@ def test_the_proposed_manoeuvre_identifies_what_was_not(vehicle: CompiledVehicle
     speed = np.full(len(angle), 1.0)
     angle[:50], speed[:250] = 0.0, 0.0
     log = measurements_only(simulated_log(CAR, (angle, speed), random, vehicle), CAR)
-    found = identify(measured_drive(log, "log"), {}, [*GEOMETRY, *ODOMETRY], vehicle)
+    found = identify(drive_of(log, "log"), {}, [*GEOMETRY, *ODOMETRY], vehicle)
     assert covered(found, CAR) == [True] * 4
 
 
@@ -100,7 +100,7 @@ def test_a_log_that_begins_in_motion_is_met(vehicle: CompiledVehicle) -> None:
     log = measurements_only(simulated_log(CAR, random_drive(random), random, vehicle), CAR)
     later = {name: Series(item.t[700:2700], item.values[700:2700], item.column) for name, item in log.items()}
     assert abs(later["measured_speed"].values[0]) > 0.1
-    found = identify(measured_drive(later, "log"), {"car.wheelbase": 2.62}, ["car.steering.ratio", *ODOMETRY], vehicle)
+    found = identify(drive_of(later, "log"), {"car.wheelbase": 2.62}, ["car.steering.ratio", *ODOMETRY], vehicle)
     assert covered(found, CAR) == [True] * 3
 
 

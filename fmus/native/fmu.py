@@ -5,6 +5,7 @@ from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
+from fmus.cache_paths import CACHE
 from fmus.contents.archive import DESCRIPTION, archive_bytes, archive_guid, content_guid
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.description3 import ABILITIES as ABILITIES3
@@ -12,13 +13,12 @@ from fmus.contents.description3 import model_description3
 from fmus.contents.fmu_documentation import documentation, reference_result
 from fmus.contents.xml_file import xml_bytes
 from fmus.files import write_whole
-from fmus.locks import kept_file
+from fmus.locks import cache_file
 from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
 from fmus.native.libraries import in_c
 from fmus.native.platforms import PLATFORMS
 from fmus.native.sources import fmu_sources, unit_name
-from fmus.places import CACHE
 from modelkit.model import Model
 
 CACHED_FMUS = 4
@@ -64,7 +64,7 @@ def build(
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
         build_archive = partial(archive, model, names, guid, chosen, fmi)
-        cached = kept_file(CACHE, f"{model.name}-fmi{fmi}", guid.strip("{}"), ".fmu", build_archive, CACHED_FMUS)
+        cached = cache_file(CACHE, f"{model.name}-fmi{fmi}", guid.strip("{}"), ".fmu", build_archive, CACHED_FMUS)
         write_whole(path, cached.read_bytes())
     return path
 

@@ -20,6 +20,7 @@ from controller_fmu import (
 from controller_fmu.common.clock import Clock, begin, refusal_output, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.parking.params import ParkingSystem
+from controller_fmu.policy.params import PolicySystem
 from controller_fmu.valet.params import ValetSystem
 from modelkit.composition import make_named_tuple, merge_records
 from modelkit.model import Model, SampledSystem, SampledSystems, View
@@ -67,7 +68,13 @@ def _parking() -> Model:
     return MODEL
 
 
-APART = StandaloneModels({ValetSystem.VALET: _valet, ParkingSystem.PARKING: _parking})
+def _policy() -> Model:
+    from controller_fmu.policy import MODEL
+
+    return MODEL
+
+
+APART = StandaloneModels({ValetSystem.VALET: _valet, ParkingSystem.PARKING: _parking, PolicySystem.POLICY: _policy})
 """Those that are a controller of their own, with work arrays or a map: by their value of ``controller.system``."""
 
 System: Any = union(

@@ -119,7 +119,7 @@ def compile_rows(
     Raises ``KeyError`` for a signal that does not exist, ``TypeError`` if connected types differ or a model
     cannot be compiled, ``RuntimeError`` where there is no compiler.
     """
-    tables = _Tables(models, ending, kept, faults, code)
+    tables = BatchTables(models, ending, kept, faults, code)
     library = ctypes.CDLL(str(batch_library()))
     library.batch_rows.restype = Long
     library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer, Pointer]
@@ -143,7 +143,7 @@ def compile_rows(
     return rows
 
 
-class _Tables:
+class BatchTables:
     """The C structures of a batch, and all memory they point to."""
 
     def __init__(
@@ -167,11 +167,11 @@ class _Tables:
             for name, model in models.items()
         ]
         end = ending or Ending("", (), "", 0.0, 0)
-        found = [self._signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
+        found = [self.signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
         self._batch = BatchC(
-            self._array(Pointer, [library.model_library() for library in libraries]),
-            self._array(LinkC, [LinkC(*link) for link in links]),
-            self._array(KeptC, notes),
+            self.array(Pointer, [library.model_library() for library in libraries]),
+            self.array(LinkC, [LinkC(*link) for link in links]),
+            self.array(KeptC, notes),
             len(libraries),
             len(links),
             len(notes),
@@ -179,8 +179,8 @@ class _Tables:
             bits(end.final),
             end.still,
             end.time_ns,
-            self._array(FaultC, [_plan(faults, number) for number in range(len(faults))]),
-            self._array(Long, [place for fault in faults for place in fault.places]),
+            self.array(FaultC, [_plan(faults, number) for number in range(len(faults))]),
+            self.array(Long, [place for fault in faults for place in fault.places]),
             len(faults),
         )
         self.address = ctypes.addressof(self._batch)
@@ -190,13 +190,15 @@ class _Tables:
     def _note(self, item: Kept) -> Any:
         when, values = SignalC(0, 0, 0), 0
         if item.when is not None:
-            when, values = self._signal(item.when.signal), bits(item.when.values)
-        return KeptC(HOW.index(item.how), self._signal(item.signal), when, values)
+            when, values = self.signal(item.when.signal), bits(item.when.values)
+        return KeptC(HOW.index(item.how), self.signal(item.signal), when, values)
 
-    def _signal(self, name: str) -> Any:
+    def signal(self, name: str) -> Any:
+        """Return where an output, or an input, is. Raises ``KeyError`` for a name that does not exist."""
         return SignalC(*self._places[name])
 
-    def _array(self, kind: Any, items: list[Any]) -> int:
+    def array(self, kind: Any, items: list[Any]) -> int:
+        """Return the address of ``items``, which live as long as the tables."""
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)

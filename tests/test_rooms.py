@@ -24,6 +24,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.native", "fmus.python", "fmus.systems", "fmus.model_fields"),
     ("fmus.study_slices",),
     ("fmus.compiled_batch",),
+    ("fmus.compiled_episodes",),
     ("fmus.build",),
     ("fmus.own_model", "fmus.sbom"),
     ("orchestrator.text",),
@@ -49,13 +50,14 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),
     ("orchestrator.commands",),
     ("orchestrator.cli", "apa_cosim"),
+    ("apa_cosim.gym",),
     ("orchestrator.__main__",),
 )
 """A room imports rooms of the floors above its own line only, never one beside it."""
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
 """These know of nothing but models."""
-INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid")
+INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "apa_cosim.gym")
 """Only these look into a model's package; the others take its ``MODEL``."""
 MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 40, 6, 5
 FILES_PER_FOLDER = 20

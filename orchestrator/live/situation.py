@@ -14,7 +14,7 @@ from orchestrator.scenario.models import models_for
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
-from orchestrator.sweep.disturbed import heard, numbers_for
+from orchestrator.sweep.disturbed import fault_receivers, numbers_for
 from orchestrator.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.sweep.verdict import limit_value
 from orchestrator.text.errors import BadInput
@@ -85,7 +85,10 @@ def _faults(scenario: Scenario) -> dict[str, Any]:
     return {
         "said": [_fault_text(fault) for fault in scenario.faults],
         "when": [[fault.start, fault.stop] for fault in scenario.faults],
-        "heard": [[FAULTS.index(kind), model, *places] for kind, model, places in (x.inputs for x in heard(scenario))],
+        "heard": [
+            [FAULTS.index(kind), model, *places]
+            for kind, model, places in (x.inputs for x in fault_receivers(scenario))
+        ],
         "numbers": numbers,
     }
 

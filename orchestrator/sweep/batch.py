@@ -19,7 +19,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.disturbed import fault_numbers, heard
+from orchestrator.sweep.disturbed import fault_numbers, fault_receivers
 from orchestrator.sweep.job import Chunk, Job, arrays, chunk_scenario
 from orchestrator.sweep.rows import FIRST_MEASURE, row_of
 from orchestrator.sweep.study_code import STUDY_CODE_FROM, Choices, StudyRows, choices_of, explanation
@@ -75,7 +75,7 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
 
     ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
     """
-    faults = tuple(item.inputs for item in heard(scenario))
+    faults = tuple(item.inputs for item in fault_receivers(scenario))
     with _compiling:
         return _compile_rows(tuple(scenario.models.items()), measures, faults, choices, _ending(scenario))
 

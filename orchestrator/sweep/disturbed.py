@@ -37,7 +37,7 @@ class Receiver(NamedTuple):
     """The first of them, by which its numbers are read."""
 
 
-def heard(scenario: Scenario) -> tuple[Receiver, ...]:
+def fault_receivers(scenario: Scenario) -> tuple[Receiver, ...]:
     """Return who hears the faults of ``scenario``, in the order in which they act. Raises ``BadInput``."""
     if not scenario.faults:
         return ()
@@ -71,7 +71,7 @@ def numbers_for(
 
     ``seeds``: of the runs; ``varied``: fault and key -> its values in the runs.
     """
-    hearers, varied = heard(scenario), varied or {}
+    hearers, varied = fault_receivers(scenario), varied or {}
     found = np.empty((len(seeds), len(hearers), FAULT_NUMBERS))
     for count, item in enumerate(hearers):
         fault = scenario.faults[item.fault]

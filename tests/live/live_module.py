@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.master import last_exchange
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.disturbed import heard, numbers_for
+from orchestrator.sweep.disturbed import fault_receivers, numbers_for
 
 STOP_TIME, STANDSTILL = 0.0, 1.0
 
@@ -95,7 +95,8 @@ def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:
     known = places(tuple(scenario.models.items()))
     signals = [*known[ending.signal], *known["vehicle.speed"]]
     seen = [number for name in names for number in known[name]]
-    plans = [(FAULTS.index(kind), model, places) for kind, model, places in (item.inputs for item in heard(scenario))]
+    inputs = [item.inputs for item in fault_receivers(scenario)]
+    plans = [(FAULTS.index(kind), model, places) for kind, model, places in inputs]
     counts = [0, len(names), len(plans), sum(len(places) for _, _, places in plans)]
     faults = [number for kind, model, places in plans for number in (kind, model, len(places), *places)]
     return [final, ending.still, ending.standstill_ns, *signals, *counts, *seen, *faults]

@@ -338,3 +338,144 @@ LIBRARY_EXPORT int64_t batch_rows(const Batch *batch, int64_t rows, const double
     free(memory);
     return failed;
 }
+
+/* Runs that a caller takes on by some exchanges at a time, with inputs of its own: episodes of a learner. */
+typedef struct {
+    const Batch *batch;
+    const Signal *given; /* inputs that the caller sets */
+    const Signal *seen;  /* signals that the caller sees */
+    int64_t given_count, seen_count;
+    Signal broken; /* a run is broken off where bit n of values is set for its value n */
+    uint64_t values;
+} Access;
+
+typedef enum { GOES_ON, AT_STOP_TIME, AT_STANDSTILL, BROKEN_OFF } Progress;
+
+typedef struct {
+    Runner runner;
+    Course course;
+    Progress progress;
+    Place *given, *seen;
+    Place broken;
+} Episode;
+
+typedef struct {
+    const Access *access;
+    int64_t count;
+    unsigned char *memory;
+    size_t size; /* of one episode's part of the memory */
+    Episode *episodes;
+} Episodes;
+
+static void connect_episode(const Access *access, Episode *episode, const int64_t *every) {
+    connect(&episode->runner, every);
+    for (int64_t k = 0; k < access->given_count; k++)
+        episode->given[k] = place_of(episode->runner.slaves, access->given[k]);
+    for (int64_t k = 0; k < access->seen_count; k++)
+        episode->seen[k] = place_of(episode->runner.slaves, access->seen[k]);
+    episode->broken = place_of(episode->runner.slaves, access->broken);
+}
+
+/* Lay out an episode in `memory`, or in nothing if it is NULL; returns how many bytes it takes. */
+static size_t lay_out_episode(const Access *access, Episode *episode, unsigned char *memory) {
+    size_t taken;
+    episode->runner.batch = access->batch;
+    taken = lay_out(&episode->runner, memory);
+    episode->given = part(memory, &taken, (size_t)access->given_count * sizeof(Place));
+    episode->seen = part(memory, &taken, (size_t)access->seen_count * sizeof(Place));
+    return taken;
+}
+
+LIBRARY_EXPORT void episodes_close(Episodes *all) {
+    if (!all) return;
+    for (int64_t n = 0; all->episodes && n < all->count; n++)
+        for (int64_t k = 0; k < all->access->batch->fault_count; k++) free(all->episodes[n].runner.faults[k].line);
+    free(all->episodes);
+    free(all->memory);
+    free(all);
+}
+
+/* Returns room for `count` episodes, none of them begun; NULL if there is no memory. */
+LIBRARY_EXPORT Episodes *episodes_open(const Access *access, int64_t count) {
+    Episode none;
+    Episodes *all = calloc(1, sizeof(Episodes));
+    if (!all) return NULL;
+    all->access = access;
+    all->count = count;
+    all->size = lay_out_episode(access, &none, NULL);
+    all->memory = calloc((size_t)count, all->size);
+    if (all->memory) all->episodes = calloc((size_t)count, sizeof(Episode));
+    if (!all->episodes) {
+        episodes_close(all);
+        return NULL;
+    }
+    for (int64_t n = 0; n < count; n++)
+        lay_out_episode(access, &all->episodes[n], all->memory + (size_t)n * all->size);
+    return all;
+}
+
+/* One exchange: note what is kept, and whether the run is over. */
+static void look_at(const Access *access, Episode *episode, double *row) {
+    Runner *runner = &episode->runner;
+    End end;
+    int over;
+    exchange(runner, &episode->course);
+    note(runner, &episode->course, row + 2);
+    over = is_over(runner, &episode->course, &end);
+    episode->progress = is_in(look(episode->broken), access->values) ? BROKEN_OFF
+                        : !over                                      ? GOES_ON
+                        : end == STANDSTILL                          ? AT_STANDSTILL
+                                                                     : AT_STOP_TIME;
+    row[0] = (double)(episode->progress == AT_STANDSTILL ? STANDSTILL : STOP_TIME);
+    row[1] = (double)time_of(&episode->course);
+}
+
+static void show(const Access *access, const Episode *episode, double *seen) {
+    for (int64_t k = 0; k < access->seen_count; k++) seen[k] = look(episode->seen[k]);
+}
+
+/* Begin the episodes `which`: numbers of each as in batch_rows, in the order of `which`; rows, seen and progress are
+ * those of all. Returns 0, or -1 if there is no memory. */
+LIBRARY_EXPORT int64_t episodes_begin(Episodes *all, int64_t count, const int64_t *which, const double *params,
+                                      const int64_t *times, const double *faults, double *rows, double *seen,
+                                      int64_t *progress) {
+    const Batch *batch = all->access->batch;
+    int64_t width = 0;
+    for (int64_t m = 0; m < batch->model_count; m++) width += batch->models[m]->param_count;
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t n = which[i], *time = times + i * (2 + batch->model_count);
+        Episode *episode = &all->episodes[n];
+        double *row = rows + n * (2 + batch->kept_count);
+        connect_episode(all->access, episode, time + 2);
+        episode->course = course_to(time[0], time[1]);
+        if (initialize(&episode->runner, params + i * width, faults + i * batch->fault_count * FAULT_NUMBERS, time[0]))
+            return -1;
+        begin_notes(&episode->runner, row + 2);
+        look_at(all->access, episode, row);
+        show(all->access, episode, seen + n * all->access->seen_count);
+        progress[n] = episode->progress;
+    }
+    return 0;
+}
+
+/* Take the episodes from `first` up to `end` on by `period_ns`, with the inputs `given`, a line for each of all. One
+ * whose progress says that it is over stays as it is. */
+LIBRARY_EXPORT void episodes_advance(Episodes *all, int64_t first, int64_t end, int64_t period_ns, const double *given,
+                                     double *rows, double *seen, int64_t *progress) {
+    const Access *access = all->access;
+    for (int64_t n = first; n < end; n++) {
+        Episode *episode = &all->episodes[n];
+        double *row = rows + n * (2 + access->batch->kept_count);
+        const int64_t until = time_of(&episode->course) + period_ns;
+        if (progress[n] != GOES_ON) continue;
+        for (int64_t k = 0; k < access->given_count; k++)
+            library_write((unsigned char *)episode->given[k].at, episode->given[k].kind,
+                          given[n * access->given_count + k]);
+        while (episode->progress == GOES_ON && time_of(&episode->course) < until) {
+            advance(&episode->runner, &episode->course);
+            look_at(access, episode, row);
+        }
+        show(access, episode, seen + n * access->seen_count);
+        progress[n] = episode->progress;
+    }
+}

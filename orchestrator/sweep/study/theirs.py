@@ -24,6 +24,12 @@ def parameters_known(scenario: Scenario) -> dict[str, Sequence[Variable]]:
     return {**ours, **{slave: parameters_of(path, slave) for slave, path in files_of(scenario).items()}}
 
 
+def _own_output(scenario: Scenario, signal: str) -> Variable | None:
+    owner, _, name = signal.partition(".")
+    outputs = variables(scenario.models[owner].outputs) if owner in scenario.models else []
+    return next((item for item in outputs if item.name == name), None)
+
+
 def signals_of(scenario: Scenario) -> dict[str, Signal]:
     """Return name -> signal of all inputs and outputs of models and FMUs, and of what plays a role of theirs."""
     ours = {
@@ -36,12 +42,12 @@ def signals_of(scenario: Scenario) -> dict[str, Signal]:
 
 
 def declared(scenario: Scenario, *signals: str) -> list[Variable | None]:
-    """Return signals as the system of ``scenario`` has them, states that an FMU or a role names included.
+    """Return signals as system or models of ``scenario`` have them, states that an FMU or a role names included.
 
-    None for one that it has not, and for all of a scenario without a system, whose models have them.
+    None for one that it has not.
     """
     if scenario.system is None:
-        return [None for _ in signals]
+        return [_own_output(scenario, signal) for signal in signals]
     slaves = make_slaves(scenario, None, Messages())
     try:
         ports = {slave.name: (slave.outputs, slave.inputs) for slave in assemble(scenario, slaves).slaves}

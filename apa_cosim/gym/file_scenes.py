@@ -1,0 +1,143 @@
+"""Scenes of files: cases of TPCAP (CSV), or scenarios (YAML), such as imported ones of other benchmarks.
+
+The polygons of a scene are obstacles to the car and to the verdict. Its sensors measure the boxes of the vehicle's
+scene only: the edges nearest to the target are put there, as many as there is room for.
+"""
+
+import math
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from apa_cosim.gym.scene_source import Polygons, Scenes, Seeds
+from controller_fmu.policy.params import PolicyParams, PolicySystem
+from controller_fmu.policy.standalone import MODEL
+from modelkit.variables import variables
+from orchestrator.grid.cases import BODY
+from orchestrator.grid.world.study import BODY_STEP
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.sweep.disturbed import numbers_for
+from orchestrator.sweep.job import Chunk, arrays, make_job
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.study import Study
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.geometry import edges
+from orchestrator.verdict.truth import Truth, joined, truth_of
+from vehicle_fmu.scene import SceneParams
+
+BOX_COUNT = len(SceneParams().boxes)
+EDGE_WIDTH = 1e-6
+"""Of a box that is an edge [m]."""
+FARTHEST_SHARE = 2.0
+"""A car that is this many times farther from its target than at its start has left the place."""
+POSITION = ("final heading", "final lateral position")
+"""What GB/T 41630 asks of the final pose."""
+TPCAP = ".csv"
+
+
+class FileScenes:
+    """A scene for each file; that of a seed is the file of the remainder. Raises ``BadInput``."""
+
+    def __init__(self, files: Sequence[str | Path], body: str, stop_time: float, pedals: bool) -> None:
+        if not files:
+            text = "name the cases, which are not part of the package: gymnasium.make(id, files=[...])"
+            raise BadInput(text, key="files")
+        read = [_policy_scenario(_scenario(Path(file)), body, stop_time, pedals) for file in files]
+        self._scenarios = read
+        self.scenario = read[0].model_copy(update={"obstacles": []})
+        made = [arrays(make_job(_study(item)), _chunk(item)) for item in read]
+        self._lines, self._times = (np.concatenate(parts) for parts in zip(*made, strict=True))
+        self._truth = joined([truth_of(item, _vehicle(item)) for item in read])
+
+    def scenes(self, seeds: Seeds) -> Scenes:
+        """Return the scenes of ``seeds``."""
+        at = seeds % len(self._scenarios)
+        truth = Truth(*(part[at] for part in self._truth))
+        return Scenes(self._lines[at], self._times[at], numbers_for(self.scenario, seeds), truth)
+
+    def scenario_of(self, seed: int) -> Scenario:
+        """Return the scene of a seed as a complete scenario."""
+        return self._scenarios[seed % len(self._scenarios)]
+
+    def obstacles(self, seed: int) -> Polygons:
+        """Return the polygons of the scene of a seed."""
+        return self.scenario_of(seed).obstacles
+
+
+def _scenario(file: Path) -> Scenario:
+    if not file.is_file():
+        raise BadInput("no such file", file=file)
+    if file.suffix.lower() != TPCAP:
+        return load_scenario(str(file))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{file.stem}.yaml"
+        path.write_text(yaml.safe_dump(read_tpcap(file)), encoding="utf-8")
+        return load_scenario(str(path)).model_copy(update={"file": str(file)})
+
+
+def _policy_scenario(scenario: Scenario, body: str, stop_time: float, pedals: bool) -> Scenario:
+    """Return a scenario that a policy drives: its car, target, slot and obstacles, judged by where the car stands."""
+    if scenario.target is None or scenario.task != "park":
+        raise BadInput("has no target to park at", file=scenario.file)
+    known = {item.name for item in variables(MODEL.params)} - {"system"}
+    own = {name: value for name, value in scenario.controller.items() if name in known}
+    own |= {f"target.{name}": value for name, value in scenario.target.model_dump().items()}
+    if scenario.slot is not None:
+        own |= {f"slot.{name}": value for name, value in scenario.slot.model_dump().items()}
+    away = math.hypot(*(scenario.vehicle.get(f"start.{name}", 0.0) - own[f"target.{name}"] for name in ("x", "y")))
+    own["max_distance"] = max(PolicyParams().max_distance, FARTHEST_SHARE * away)
+    limits = [item for item in shipped_requirements("gbt41630") if item.id in POSITION]
+    return Scenario(
+        name=scenario.name,
+        title=scenario.title,
+        source=scenario.source,
+        stop_time=stop_time,
+        vehicle={**scenario.vehicle, **_edges(scenario), "body": BODY[body], "body_step": BODY_STEP},
+        controller={**own, "system": int(PolicySystem.POLICY), "action.pedals": pedals},
+        target=scenario.target,
+        slot=scenario.slot,
+        obstacles=scenario.obstacles,
+        requirements=limits,
+    )
+
+
+def _edges(scenario: Scenario) -> dict[str, float]:
+    """Return boxes for the edges of the polygons that are nearest to the target, after those that the scene has."""
+    assert scenario.target is not None
+    sizes = [scenario.vehicle.get(f"scene.boxes[{number + 1}].length", 0.0) for number in range(BOX_COUNT)]
+    free = [number + 1 for number, size in enumerate(sizes) if size == 0.0]
+    x, y, _ = scenario.target.pose
+    lines = sorted(edges(scenario.obstacles), key=lambda line: _distance(x, y, line.x1, line.y1, line.x2, line.y2))
+    found: dict[str, float] = {}
+    for number, line in zip(free, lines, strict=False):
+        dx, dy = line.x2 - line.x1, line.y2 - line.y1
+        box = {"x": line.x1 + 0.5 * dx, "y": line.y1 + 0.5 * dy, "heading": math.atan2(dy, dx)}
+        box |= {"length": math.hypot(dx, dy), "width": EDGE_WIDTH}
+        found |= {f"scene.boxes[{number}].{name}": value for name, value in box.items()}
+    return found
+
+
+def _distance(x: float, y: float, x1: float, y1: float, x2: float, y2: float) -> float:
+    dx, dy = x2 - x1, y2 - y1
+    length = dx * dx + dy * dy
+    share = 0.0 if length == 0.0 else min(max(((x - x1) * dx + (y - y1) * dy) / length, 0.0), 1.0)
+    return math.hypot(x - x1 - share * dx, y - y1 - share * dy)
+
+
+def _study(scenario: Scenario) -> Study:
+    return Study(scenario, Design([], np.empty((1, 0)), np.array([1])), {"name": scenario.name})
+
+
+def _chunk(scenario: Scenario) -> Chunk:
+    return Chunk(0, 0, np.empty((1, 0)), np.array([scenario.seed]))
+
+
+def _vehicle(scenario: Scenario) -> dict[str, float]:
+    return {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)} | scenario.vehicle

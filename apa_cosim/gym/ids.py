@@ -1,0 +1,12 @@
+"""The registered environments."""
+
+from typing import Literal
+
+Scenes = Literal["parallel", "perpendicular", "world", "tpcap"]
+Body = Literal["kinematic", "double_track"]
+IDS: dict[str, Scenes] = {
+    "apa/Parallel-v0": "parallel",
+    "apa/Perpendicular-v0": "perpendicular",
+    "apa/World-v0": "world",
+    "apa/TPCAP-v0": "tpcap",
+}

@@ -1,0 +1,54 @@
+"""Policies: what acts on observations. A random one, and a learned one in an ONNX file."""
+
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from apa_cosim.gym.spaces import Floats
+from orchestrator.text.errors import BadInput
+
+
+class Policy(Protocol):
+    """Acts for many cars at once."""
+
+    def __call__(self, observations: Floats) -> Floats:
+        """Return the actions (cars, 2 or 3) for observations (cars, 24)."""
+
+
+class RandomPolicy:
+    """Draws every action evenly from its range: the baseline that any policy must beat."""
+
+    def __init__(self, seed: int = 0, actions: int = 2) -> None:
+        self._random, self._actions = np.random.default_rng(seed), actions
+
+    def __call__(self, observations: Floats) -> Floats:
+        """Return actions that do not depend on what is observed."""
+        return self._random.uniform(-1.0, 1.0, (len(observations), self._actions)).astype(np.float32)
+
+
+class OnnxPolicy:
+    """A network in an ONNX file: one input (cars, 24), one output (cars, 2 or 3) in float32, its mean action.
+
+    Raises ``BadInput`` for a file that is none, and without onnxruntime (the extra ``onnx``).
+    """
+
+    def __init__(self, file: Path) -> None:
+        try:
+            import onnxruntime
+        except ImportError as error:
+            raise BadInput("needs onnxruntime: install apa-cosim[onnx]", file=file) from error
+        if not file.is_file():
+            raise BadInput("no such file", file=file)
+        settings = onnxruntime.SessionOptions()
+        settings.intra_op_num_threads = 1
+        try:
+            self._session: Any = onnxruntime.InferenceSession(str(file), settings, providers=["CPUExecutionProvider"])
+        except Exception as error:
+            raise BadInput(f"is no ONNX model: {str(error).splitlines()[0]}", file=file) from error
+        self._input = self._session.get_inputs()[0].name
+
+    def __call__(self, observations: Floats) -> Floats:
+        """Return the network's actions, limited to their range."""
+        found = self._session.run(None, {self._input: observations})[0]
+        return np.clip(np.asarray(found, dtype=np.float32).reshape(len(observations), -1), -1.0, 1.0)

@@ -8,6 +8,7 @@ FORMATS = {
     "csv": "a table of all signals",
     "mf4": "ASAM MDF 4",
     "rerun": "Rerun recording (.rrd)",
+    "ros2": "a bag for ROS 2, Foxglove and PlotJuggler (MCAP)",
     "ssp": "the system as .ssp, for libcosim, OMSimulator, Ecos",
 }
 """Format -> what it is. Its module has ``EXAMPLES``, ``add_arguments(parser)`` and ``run(arguments) -> exit code``."""
@@ -15,6 +16,7 @@ EXAMPLES = """examples:
   apa export csv runs/guo2015-case4/run.mcap
   apa export mf4 runs/guo2015-case4/run.mcap --out case4.mf4
   apa export rerun runs/guo2015-case4/run.mcap
+  apa export ros2 runs/guo2015-case4/run.mcap
   apa export ssp guo2015-case4
   apa export c build/c
 """

@@ -45,6 +45,7 @@ NOT_RUN = {
 NEEDS = {
     "apa export mf4": "asammdf",
     "apa export rerun": "rerun",
+    "apa export ros2": "rosbags",
     "apa export container": "ziglang",
     "fmpy simulate guo2015-case4.fmu": "ziglang",
     "apa sweep": "pyarrow",

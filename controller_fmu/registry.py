@@ -62,6 +62,12 @@ def _valet() -> Model:
     return MODEL
 
 
+def _valet_large() -> Model:
+    from controller_fmu.valet.large_map import MODEL
+
+    return MODEL
+
+
 def _parking() -> Model:
     from controller_fmu.parking import MODEL
 
@@ -74,7 +80,14 @@ def _policy() -> Model:
     return MODEL
 
 
-APART = StandaloneModels({ValetSystem.VALET: _valet, ParkingSystem.PARKING: _parking, PolicySystem.POLICY: _policy})
+APART = StandaloneModels(
+    {
+        ValetSystem.VALET: _valet,
+        ParkingSystem.PARKING: _parking,
+        PolicySystem.POLICY: _policy,
+        ValetSystem.VALET_LARGE: _valet_large,
+    }
+)
 """Those that are a controller of their own, with work arrays or a map: by their value of ``controller.system``."""
 
 System: Any = union(
@@ -82,7 +95,7 @@ System: Any = union(
     __name__,
     "Which paper's system parks the car.",
     *(row.choices for row in ROWS),
-    *(type(choice) for choice in APART),
+    *dict.fromkeys(type(choice) for choice in APART),
 )
 
 

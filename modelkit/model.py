@@ -194,6 +194,9 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
     """Its work arrays beside the state: a NamedTuple of columns."""
     charts: tuple[Chart, ...] = ()
     """Its state machines that are tables, if it is not made of systems that have theirs."""
+    substitutes: tuple[tuple[type[Any], type[Any]], ...] = ()
+    """(type that the code names, type with the same fields and longer arrays that this model has instead): the same
+    code with another capacity."""
 
     def new_store(self) -> Any:
         """Return the work arrays of a new instance, all zeros; None if the model has none."""

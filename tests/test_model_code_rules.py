@@ -17,6 +17,7 @@ NO_MODEL_CODE = (
     *("modelkit/composition.py", "controller_fmu/registry.py"),
     *(
         "controller_fmu/valet/standalone.py",
+        "controller_fmu/valet/large_map.py",
         "controller_fmu/parking/standalone.py",
         "controller_fmu/policy/standalone.py",
     ),

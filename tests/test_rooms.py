@@ -47,7 +47,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.falsification",),
     ("orchestrator.live",),
     ("orchestrator.export",),
-    ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),
+    ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "orchestrator.benchmark"),
     ("orchestrator.commands",),
     ("orchestrator.cli", "apa_cosim"),
     ("apa_cosim.gym",),

@@ -1,7 +1,7 @@
 """A path for a request: one search after the other, step by step, as a memo of (scene, request, count of steps).
 
-What the store holds after ``search_to`` follows from its arguments alone. If it holds something else, of another
-request or of later steps, all is done anew from the first step.
+What the store holds after ``search_to`` follows from the scene taken over and its arguments alone. If it holds
+something else, of another scene or request or of later steps, all is done anew from the first step.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,6 @@ from controller_fmu.planning.ladder import LADDER, MIN_MARGIN, ROOM_RESERVE, tas
 from controller_fmu.planning.plan_store import (
     COUNT,
     EDGE_COUNT,
-    EDGES,
     GOAL_TIGHTER,
     KEPT_COST,
     KEPT_COUNT,
@@ -35,7 +34,7 @@ from controller_fmu.planning.rasters import FAR, block_route, list_near, measure
 from controller_fmu.planning.room import see_room
 from controller_fmu.planning.setting import add_edges, is_inside
 from controller_fmu.planning.shorten import begin_path, path_cost, shorten
-from controller_fmu.planning.task import CORNERS, Request, Scene, Task
+from controller_fmu.planning.task import Corner, Request, Task
 from controller_fmu.planning.tree import FOUND, SEARCHING, begin_tree, grow
 
 SCENE = 0
@@ -54,6 +53,8 @@ TOO_MANY_EDGES = 5
 NO_ROOM = 6
 """Free at start and goal, but with less than the least margin."""
 
+OTHER_SCENE = -1
+"""Instead of a count of steps: the scene has changed since."""
 PATH = 96
 MOST_CUSPS = 25
 
@@ -79,17 +80,17 @@ class Path(NamedTuple):
     pieces: tuple[Piece, ...] = (Piece(),) * PATH
 
 
-def search_to(store: PlanStore, scene: Scene, request: Request, count: int) -> None:
-    """Bring the search for a path to ``count`` steps."""
-    if store.mark[COUNT] > count or not is_of(store, scene, request):
-        begin(store, scene, request)
+def search_to(store: PlanStore, request: Request, count: int) -> None:
+    """Bring the search for a path in the scene taken over to ``count`` steps."""
+    if store.mark[COUNT] > count or not is_of(store, request):
+        begin(store, request)
     for _ in range(store.mark[COUNT], count):
         step(store, request)
 
 
-def search_on(store: PlanStore, scene: Scene, request: Request, count: int, most: int) -> int:
+def search_on(store: PlanStore, request: Request, count: int, most: int) -> int:
     """Bring the search to ``count`` steps and on by at most ``most``, fewer where one is long; returns the count."""
-    search_to(store, scene, request, count)
+    search_to(store, request, count)
     for number in range(most):
         phase = store.mark[PHASE]
         is_long = phase < GROW
@@ -106,29 +107,31 @@ def status_of(store: PlanStore) -> int:
     return store.mark[STATUS]
 
 
-def is_of(store: PlanStore, scene: Scene, request: Request) -> bool:
-    """Return whether the store holds the search for this request."""
+def is_of(store: PlanStore, request: Request) -> bool:
+    """Return whether the store holds the search for this request, in the scene that it holds."""
     numbers = _numbers(request)
     for which in range(11):
         if store.asked[which] != numbers[which]:
             return False
-    for number in range(CORNERS):
-        corner = scene.corners[number]
-        if store.corner_of[number] != corner.polygon:
-            return False
-        if store.corner_x[number] != corner.x or store.corner_y[number] != corner.y:
-            return False
-    return True
+    return store.mark[COUNT] != OTHER_SCENE
 
 
-def begin(store: PlanStore, scene: Scene, request: Request) -> None:
-    """Forget all, and remember what is asked."""
+def take_corner(store: PlanStore, number: int, corner: Corner) -> None:
+    """Take over a corner of the scene; the search in the store is of another scene if the corner is new."""
+    if (
+        store.corner_of[number] != corner.polygon
+        or store.corner_x[number] != corner.x
+        or store.corner_y[number] != corner.y
+    ):
+        put_corner(store, number, corner.x, corner.y, corner.polygon)
+        put_mark(store, COUNT, OTHER_SCENE)
+
+
+def begin(store: PlanStore, request: Request) -> None:
+    """Forget all but the scene, and remember what is asked."""
     numbers = _numbers(request)
     for which in range(11):
         put_asked(store, which, numbers[which])
-    for number in range(CORNERS):
-        corner = scene.corners[number]
-        put_corner(store, number, corner.x, corner.y, corner.polygon)
     put_mark(store, COUNT, 0)
     put_mark(store, PHASE, SCENE)
     put_mark(store, RUNG, 0)
@@ -203,7 +206,7 @@ def _lay_out(store: PlanStore, request: Request) -> None:
     window = window_of(request)
     edges = add_edges(store, request.goal, window)
     put_mark(store, EDGE_COUNT, edges)
-    if edges > EDGES:
+    if edges > len(store.edge_x1):
         _over(store, TOO_MANY_EDGES)
         return
     fits = list_near(store, edges, window, request.car)

@@ -6,8 +6,6 @@ from typing import NamedTuple
 from controller_fmu.planning.clearance import SIGHT
 from controller_fmu.planning.plan_store import (
     BUCKETS,
-    EDGES,
-    NEAR_ITEMS,
     NONE,
     PlanStore,
     clear_route,
@@ -57,8 +55,8 @@ def add_edge(store: PlanStore, count: int, start: Point, end: Point, window: Sea
                 leave = t if t < leave else leave
     if enter > leave:
         return count
-    if count >= EDGES:
-        return EDGES + 1
+    if count >= len(store.edge_x1):
+        return len(store.edge_x1) + 1
     put_edge(store, count, _onward(start, enter, dx, dy), _onward(start, leave, dx, dy))
     return count + 1
 
@@ -78,7 +76,7 @@ def list_near(store: PlanStore, edges: int, window: SearchWindow, car: PlannedCa
     for cell in range(cells + 1):
         total += store.near_first[cell]
         put_near_first(store, cell, total)
-    if total > NEAR_ITEMS:
+    if total > len(store.near_edge):
         return False
     for edge in range(edges):
         _each_near(store, edge, window, car, True)

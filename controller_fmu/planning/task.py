@@ -21,12 +21,6 @@ class Corner(NamedTuple):
     polygon: Annotated[int, Signal("1", "corners in a row with the same number are one polygon; 0: unused", 0)] = 0
 
 
-class Scene(NamedTuple):
-    """Polygons that stand in the way, convex or not."""
-
-    corners: tuple[Corner, ...] = (Corner(),) * CORNERS
-
-
 class PlannedCar(NamedTuple):
     """The car's outline about its centre, and what it can steer."""
 

@@ -1,7 +1,6 @@
 """What was heard, in the store: places along both sides, and the map made of them; the only functions that write it."""
 
 from controller_fmu.planning.plan_store import HEARD, RAYS, SIDES, PlanStore
-from controller_fmu.planning.task import CORNERS
 from modelkit.vocabulary import Pose
 
 MERGED = 0.1
@@ -77,7 +76,7 @@ def put_ray(store: PlanStore, side: int, number: int, at: Pose, end: Pose) -> No
 
 def clear_around(store: PlanStore) -> None:
     """Empty the map."""
-    for corner in range(CORNERS):
+    for corner in range(len(store.around_x)):
         store.around_x[corner] = 0.0
         store.around_y[corner] = 0.0
         store.around_of[corner] = 0

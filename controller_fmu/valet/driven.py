@@ -16,7 +16,7 @@ from controller_fmu.valet.found.search import shallower
 from controller_fmu.valet.found.way_back import WayBack, way_back
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
-from controller_fmu.valet.sight import end_ahead, heard_again, look, remembered, scene_of
+from controller_fmu.valet.sight import end_ahead, heard_again, look, remembered, take_scene
 from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.state import Tracked, ValetState
 from modelkit.car import largest_curvature
@@ -59,9 +59,9 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: Val
     coming = ahead_of(state.path, state.piece, left, params)
     if turns_already(coming, params):
         angle = math.atan(params.car.wheelbase * coming.rest.then)
-    scene = scene_of(store, params, state.seen)
+    take_scene(store, params, state.seen)
     rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
-    sight = look(inputs, rest, scene, state.search.gap, params)
+    sight = look(store, inputs, rest, state.search.gap, params)
     tracked = Tracked(left, at, off.lateral, off.heading, angle, coming)
     return state._replace(tracked=tracked, sight=heard_again(sight, state.sight))
 

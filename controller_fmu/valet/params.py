@@ -113,6 +113,8 @@ class ValetSystem(IntEnum):
 
     VALET = 7
     """To any pose among the polygons of a map; a controller of its own."""
+    VALET_LARGE = 10
+    """The same with a map of 2,048 corners, of 360 otherwise; a controller of its own."""
 
 
 class ValetParams(NamedTuple):

@@ -26,7 +26,7 @@ from controller_fmu.valet.found.nearby import forget_under, lay_nearby
 from controller_fmu.valet.found.way_back import WayBack, path_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.sight import Sight, scene_of
+from controller_fmu.valet.sight import Sight, take_scene
 from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, is_in_place, stands_in_road
 from controller_fmu.valet.state import ValetState
@@ -65,8 +65,8 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
         request = Request(pose, goal, body_of(params), params.plan.margin)
         if (state.step == Step.SHOWN or not params.search.active) and is_in_place(pose, goal, params):
             return state._replace(request=request, searched=1, plans=state.plans + 1, path=AT_GOAL, sight=Sight())
-    scene = scene_of(store, params, state.seen)
-    count = search_on(store, scene, request, state.searched, params.plan.at_once)
+    take_scene(store, params, state.seen)
+    count = search_on(store, request, state.searched, params.plan.at_once)
     status = status_of(store)
     path = state.path
     if status == PLANNED:

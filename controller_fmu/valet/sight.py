@@ -8,9 +8,9 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.sensors import sensor_at
-from controller_fmu.planning.plan import Piece
+from controller_fmu.planning.plan import Piece, take_corner
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
+from controller_fmu.planning.task import CORNERS, Corner, drive
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
@@ -92,7 +92,7 @@ class SensorOnWay(NamedTuple):
     """It looks straight there."""
 
 
-def look(inputs: ValetInput, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> Sight:
+def look(store: PlanStore, inputs: ValetInput, piece: Piece, gap: Gap, params: ValetParams) -> Sight:
     """Return the sight of a car that drives a ``piece``, the rest of its move, on its way into a ``gap``, or no gap."""
     readings = inputs.ultrasonic
     first = 0 if piece.way > 0.0 else 4
@@ -111,7 +111,7 @@ def look(inputs: ValetInput, piece: Piece, scene: Scene, gap: Gap, params: Valet
             at = sensor_at(params.car.ultrasonic.mounts[number], inputs.odometry)
             ahead = first < number < first + 3 and params.search.active
             one = SensorOnWay(number, at, reading, leads, ahead)
-            if _stops(one, inputs.odometry, piece, scene, gap, params):
+            if _stops(store, one, inputs.odometry, piece, gap, params):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH
@@ -123,7 +123,7 @@ def look(inputs: ValetInput, piece: Piece, scene: Scene, gap: Gap, params: Valet
     return _sight(nearest, leading, abs(inputs.measured_speed), straight, echo, params)
 
 
-def _stops(one: SensorOnWay, pose: Pose, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> bool:
+def _stops(store: PlanStore, one: SensorOnWay, pose: Pose, piece: Piece, gap: Gap, params: ValetParams) -> bool:
     """Return whether a car stops before what a sensor hears.
 
     Into or out of a slot along the road what a corner sensor hears stands before or behind the car: what is known
@@ -131,14 +131,14 @@ def _stops(one: SensorOnWay, pose: Pose, piece: Piece, scene: Scene, gap: Gap, p
     """
     if one.ahead or not params.search.active:
         close = one.ahead and one.reading < min(CLOSE, abs(piece.way) + CLOSEST)
-        return close or one.reading < expected(one.at, scene, params) - params.guard.surprise
+        return close or one.reading < expected(store, one.at, params) - params.guard.surprise
     near = SIDE if one.number >= SIDE_SENSOR else CORNER
     if one.reading >= APART or (one.reading >= near and not _is_apart(_end_of(one.at, one.reading), gap, params)):
         return False
-    known = expected(one.at, scene, params)
+    known = expected(store, one.at, params)
     stops = one.reading < known - _surprise(one.reading) or (one.leads and one.reading < AT_CORNER)
     if stops and gap.layout == GapLayout.ALONG and one.leads and one.reading > known - CORNER_SURPRISE:
-        return not _leaves(one.number, pose, piece, known, scene, params)
+        return not _leaves(store, one.number, pose, piece, known, params)
     return stops
 
 
@@ -187,10 +187,10 @@ def _sight(nearest: float, leading: float, speed: float, straight: bool, echo: P
     return Sight(fast, room <= stop, straight, echo)
 
 
-def _leaves(number: int, pose: Pose, piece: Piece, known: float, scene: Scene, params: ValetParams) -> bool:
+def _leaves(store: PlanStore, number: int, pose: Pose, piece: Piece, known: float, params: ValetParams) -> bool:
     """Return whether a sensor leaves what it should hear, ``known`` [m] off, on a ``piece`` driven from ``pose``."""
     soon = drive(pose, sign(piece.way) * SOON, piece.k)
-    return expected(sensor_at(params.car.ultrasonic.mounts[number], soon), scene, params) >= known
+    return expected(store, sensor_at(params.car.ultrasonic.mounts[number], soon), params) >= known
 
 
 def heard_again(sight: Sight, before: Sight) -> Sight:
@@ -215,21 +215,23 @@ def _surprise(reading: float) -> float:
     return CORNER_SURPRISE if reading > TOUCHING else TOUCHING_SURPRISE
 
 
-def expected(at: Pose, scene: Scene, params: ValetParams) -> float:
+def expected(store: PlanStore, at: Pose, params: ValetParams) -> float:
     """Return the distance [m] that a sensor should hear from the scene's polygons, at most its range."""
     start = Point(at.x, at.y)
     half = params.car.ultrasonic.half_angle
     nearest = params.car.ultrasonic.max_range
     first = 0
-    for number in range(CORNERS):
-        a = scene.corners[number]
-        if a.polygon > 0:
-            if number > 0 and scene.corners[number - 1].polygon != a.polygon:
+    for number in range(len(store.corner_x)):
+        polygon = store.corner_of[number]
+        if polygon > 0:
+            if number > 0 and store.corner_of[number - 1] != polygon:
                 first = number
-            last = number == CORNERS - 1
-            goes_on = scene.corners[0 if last else number + 1].polygon == a.polygon and not last
-            b = scene.corners[number + 1 if goes_on else first]
-            gap = cone_line(start, at.heading, half, Point(a.x, a.y), Point(b.x, b.y))
+            last = number == len(store.corner_x) - 1
+            goes_on = store.corner_of[0 if last else number + 1] == polygon and not last
+            after = number + 1 if goes_on else first
+            a = Point(store.corner_x[number], store.corner_y[number])
+            b = Point(store.corner_x[after], store.corner_y[after])
+            gap = cone_line(start, at.heading, half, a, b)
             nearest = gap if gap < nearest else nearest
     return nearest
 
@@ -251,18 +253,14 @@ def remembered(seen: tuple[Corner, ...], echo: Pose, count: int, small: bool) ->
     return seen
 
 
-def scene_of(store: PlanStore, params: ValetParams, seen: tuple[Corner, ...]) -> Scene:
-    """Return the map's polygons, or those made of what was heard in a search, and what was heard besides."""
-    heard = params.search.active
-    return Scene(
-        tuple(
-            (
-                Corner(store.around_x[number], store.around_y[number], store.around_of[number])
-                if heard
-                else params.map[number if number < MAP_CORNERS else 0]
-            )
-            if number < MAP_CORNERS
-            else seen[number - MAP_CORNERS if number >= MAP_CORNERS else 0]
-            for number in range(CORNERS)
-        )
-    )
+def take_scene(store: PlanStore, params: ValetParams, seen: tuple[Corner, ...]) -> None:
+    """Take over the map's polygons, or those made of what was heard in a search, and what was heard besides."""
+    room = len(params.map)
+    for number in range(len(params.map)):
+        if params.search.active:
+            heard = Corner(store.around_x[number], store.around_y[number], store.around_of[number])
+            take_corner(store, number, heard)
+        else:
+            take_corner(store, number, params.map[number])
+    for number in range(len(seen)):
+        take_corner(store, room + number, seen[number])

@@ -55,9 +55,9 @@ def _slice(model: Model, interfaces: list[Any], live: Slice) -> SliceResult:
 
 def _wholes(model: Model) -> dict[Any, Any]:
     """Return what the types of each system, and of what all share, stand for: those of the model."""
+    found: dict[Any, Any] = dict(model.substitutes)
     if model.systems is None:
-        return {}
-    found: dict[Any, Any] = {}
+        return found
     for item in model.systems.systems:
         found |= {item.params: model.params, item.inputs: model.inputs, item.told: model.outputs}
     told = typing.get_type_hints(model.systems.refused).get("return")

@@ -33,6 +33,8 @@ MOVES_PER_POINT = 4
 MAX_JOINT_FIELDS = 4
 """Fields of a group that act together where one of them decides about a mode: a ratio, an angle, a rate."""
 SUFFIX = ".dependencies.json"
+LONE_ELEMENTS = 32
+"""So many elements at either end of an array move alone; those between are alike and move together with all."""
 CACHED_RESULTS = 8
 """Results of older sources that stay in the cache."""
 DEFAULT_SAMPLE_FRACTION = 0.9
@@ -71,7 +73,7 @@ def find_dependencies(model: Model) -> Found:
     """Return the same without the cache."""
     known = variables(model.params, model.first_params())
     free = [place for place, item in enumerate(known) if model.shows(item.name)]
-    acting = _acting(model, known, free)
+    acting = _acting(_as_written(model))
     deciding = {
         parameter
         for parameter, outputs in acting.items()
@@ -94,8 +96,16 @@ def find_dependencies(model: Model) -> Found:
     return found
 
 
-def _acting(model: Model, known: list[Variable], free: list[int]) -> dict[str, set[str]]:
+def _as_written(model: Model) -> Model:
+    """Return the model with the types that its code names: arrays count as one, however long they are."""
+    own = {substitute: cls for cls, substitute in model.substitutes}
+    return model._replace(params=own.get(model.params, model.params))
+
+
+def _acting(model: Model) -> dict[str, set[str]]:
     """Return parameter -> the outputs that it has been seen to change; an array counts as one."""
+    known = variables(model.params, model.first_params())
+    free = [place for place, item in enumerate(known) if model.shows(item.name)]
     names = [_thing(item.name) for item in known]
     outputs = [_thing(item.name) for item in variables(model.outputs)]
     acting: dict[str, set[str]] = {name: set() for name in names}
@@ -117,9 +127,10 @@ def _acting(model: Model, known: list[Variable], free: list[int]) -> dict[str, s
         search(point, expected, moved, places[:middle])
         search(point, expected, moved, places[middle:])
 
+    lone = _lone(known, free)
     for point in _plain_points(known, free):
         expected = start(point)
-        for place in free:
+        for place in lone:
             for value in _ways(known[place], point[place]):
                 search(point, expected, {place: value}, (place,))
     for point in _sample_points(known, free, model.name):
@@ -128,6 +139,25 @@ def _acting(model: Model, known: list[Variable], free: list[int]) -> dict[str, s
         for number in range(MOVES_PER_POINT):
             search(point, expected, {place: way[number % len(way)] for place, way in ways.items()}, free)
     return acting
+
+
+def _lone(known: list[Variable], free: list[int]) -> list[int]:
+    """Return the places of the parameters that move alone: all, but of long arrays the elements at both ends."""
+    elements = {place: _element(known[place].name) for place in free}
+    counts: Counter[str] = Counter()
+    for array, number in elements.values():
+        counts[array] = max(counts[array], number)
+    return [
+        place
+        for place, (array, number) in elements.items()
+        if number <= LONE_ELEMENTS or number > counts[array] - LONE_ELEMENTS
+    ]
+
+
+def _element(name: str) -> tuple[str, int]:
+    """Return the array that a parameter is in and the number of its element; 0 outside arrays."""
+    array, bracket, rest = name.partition("[")
+    return (array, int(rest.partition("]")[0])) if bracket else (name, 0)
 
 
 def _starter(model: Model) -> Callable[[Values], Values]:

@@ -1,6 +1,7 @@
 """One module per command, each with ``EXAMPLES``, ``add_arguments(parser)`` and ``run(arguments) -> exit code``."""
 
 COMMANDS = {
+    "bench": "benchmark: plan and drive public scenes, as one table",
     "build": "build Controller.fmu and Vehicle.fmu",
     "check": "evaluate a run by requirements",
     "compare": "compare two runs",

@@ -39,10 +39,20 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     return files
 
 
+_BESIDE: dict[tuple[Path, str], tuple[Model, Path, int]] = {}
+
+
 def fmu_beside(path: Path, model: Model) -> Path:
-    """Return the up-to-date FMU of ``model`` beside another of the same kind, built if it is not there."""
+    """Return the up-to-date FMU of ``model`` beside another of the same kind, built if it is not there.
+
+    Sources do not change within a process: there what was built once is taken while its file is the same.
+    """
+    known, file, at = _BESIDE.get((path.parent, model.name), (None, path, 0))
+    if known is model and file.is_file() and file.stat().st_mtime_ns == at:
+        return file
     with one_at_a_time(path.parent.parent / "build"):
         (built,) = build_into(path.parent.parent, path.parent.name, models=[model])
+    _BESIDE[path.parent, model.name] = (model, built.path, built.path.stat().st_mtime_ns)
     return built.path
 
 

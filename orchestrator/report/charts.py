@@ -5,11 +5,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import controller_fmu
 from modelkit.model import Chart
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.scenario.catalogue import texts_of
-from orchestrator.scenario.models import APART, MODELS, apart_models
+from orchestrator.scenario.models import APART, MODELS
 
 ROOT = Path(__file__).parents[2]
 ANY = "any state"
@@ -27,8 +28,12 @@ def charts_data() -> list[tuple[Chart, dict[str, Any]]]:
         for system in model.systems.systems
         for chart in system.charts
     ]
-    apart = [((int(APART[name]),), chart) for name, model in apart_models().items() for chart in model.charts]
-    return [(chart, {"values": list(values), **_chart(chart)}) for values, chart in (*own, *apart) if chart.signal]
+    apart: dict[int, tuple[list[int], Chart]] = {}
+    for choice in APART.values():
+        for chart in controller_fmu.APART[choice].charts:
+            apart.setdefault(id(chart.rows), ([], chart))[0].append(int(choice))
+    found = [*own, *apart.values()]
+    return [(chart, {"values": list(values), **_chart(chart)}) for values, chart in found if chart.signal]
 
 
 def charts_of(recording: Recording) -> list[dict[str, Any]]:

@@ -13,8 +13,12 @@ APART = {choice.name.lower(): choice for choice in controller_fmu.APART}
 
 
 def apart_models() -> dict[str, Model]:
-    """Return name -> model of the controllers of their own; imports all of them."""
-    return {name: controller_fmu.APART[choice] for name, choice in APART.items()}
+    """Return name -> model of the controllers of their own; imports all of them.
+
+    Those that are the code of another one with longer arrays are left out: they have nothing of their own to show.
+    """
+    found = {name: controller_fmu.APART[choice] for name, choice in APART.items()}
+    return {name: model for name, model in found.items() if not model.substitutes}
 
 
 def models_for(controller: Mapping[str, object]) -> dict[str, Model]:

@@ -16,14 +16,19 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     room = sum(item.name.startswith("map[") for item in variables(scenario.models["controller"].params)) // 3
     if not room:
         return {}
-    things = [*static_obstacles(scenario), *_kerbs(scenario.vehicle)]
-    corners = [(x, y, number) for number, polygon in enumerate(things, start=1) for x, y in polygon]
+    polygons = enumerate(mapped_obstacles(scenario), start=1)
+    corners = [(x, y, number) for number, polygon in polygons for x, y in polygon]
     if room < len(corners):
         raise BadInput(f"{len(corners)} corners, the map holds {room}", file=scenario.file, key="obstacles")
     told: dict[str, float | int | bool] = {}
     for place, (x, y, number) in enumerate(corners, start=1):
         told |= {f"map[{place}].x": x, f"map[{place}].y": y, f"map[{place}].polygon": number}
     return told
+
+
+def mapped_obstacles(scenario: Scenario) -> list[Points]:
+    """Return the corners [m] of all that a map has: what stands there all the time, and kerbs as walls."""
+    return [*static_obstacles(scenario), *_kerbs(scenario.vehicle)]
 
 
 def static_obstacles(scenario: Scenario) -> list[Points]:

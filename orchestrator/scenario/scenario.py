@@ -30,8 +30,8 @@ PENETRATION = "penetration"
 """Metric that the requirement on contact limits."""
 CONTACT_FREE = "contact-free"
 """Shipped set that applies to every run."""
-LEAST_CORNERS = 3
-"""Minimum number of corners of a polygon."""
+LEAST_CORNERS = 2
+"""Minimum number of corners of a polygon; a wall has two."""
 LONGEST_STEP = 10.0
 """Maximum communication step [s]."""
 Parameter = float | int | bool | str

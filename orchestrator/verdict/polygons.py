@@ -60,7 +60,11 @@ def _clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
     """Return the distance [m] of each outline to the nearest polygon, in contact minus the depth."""
     nearest = np.full(len(poses), np.inf)
     length, width = 0.5 * (car.front + car.rear), car.half_width
-    for polygon in polygons:
+    bounds = _lower_bounds(poses, polygons, car)
+    for place in np.argsort(bounds, kind="stable"):
+        if bounds[place] > nearest.max():
+            break
+        polygon = polygons[place]
         corners = _in_outline_frames(poses, np.array(polygon, dtype=float), car)
         gaps = _edge_gaps(corners, np.roll(corners, -1, axis=1), length, width).min(axis=1)
         gaps[_middle_inside(corners)] = 0.0
@@ -69,6 +73,17 @@ def _clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
             gaps[touching] = -np.maximum(TOUCH_DEPTH, _depths(corners[touching], _convex_parts(polygon), length, width))
         nearest = np.minimum(nearest, gaps)
     return nearest
+
+
+def _lower_bounds(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
+    """Return for each polygon a distance [m] below which no outline comes, negative where they may touch."""
+    reach = float(np.hypot(max(abs(car.front), abs(car.rear)), car.half_width))
+    sizes = np.cumsum([0, *(len(polygon) for polygon in polygons)])[:-1]
+    points = np.concatenate([np.asarray(polygon, dtype=float) for polygon in polygons])
+    low, high = np.minimum.reduceat(points, sizes), np.maximum.reduceat(points, sizes)
+    places = poses[:, :2]
+    apart = np.maximum(np.maximum(low - places.max(axis=0), places.min(axis=0) - high), 0.0)
+    return np.asarray(np.hypot(apart[:, 0], apart[:, 1])) - reach
 
 
 def _depths(corners: Array, parts: Sequence[Sequence[int]], length: float, width: float) -> Array:

@@ -15,7 +15,7 @@ from modelkit.vocabulary import Prompt
 
 NAMES = [branch.field for branch in SYSTEMS.systems]
 
-APART = {System.VALET, System.PARKING, System.POLICY}
+APART = {System.VALET, System.PARKING, System.POLICY, System.VALET_LARGE}
 """Controllers of their own."""
 
 

@@ -3,15 +3,19 @@
 import sys
 from typing import Annotated, NamedTuple
 
-from controller_fmu.planning.plan import Path, path_of, search_to, status_of
+from controller_fmu.planning.plan import Path, path_of, search_to, status_of, take_corner
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import Request, Scene
+from controller_fmu.planning.task import CORNERS, Corner, Request
 from modelkit.model import Model
 from modelkit.signal import Signal
 
 
 class State(NamedTuple):
     count: int = 0  # type: ignore[assignment]  # tuples have a method count
+
+
+class Scene(NamedTuple):
+    corners: tuple[Corner, ...] = (Corner(),) * CORNERS
 
 
 class Params(NamedTuple):
@@ -35,7 +39,9 @@ def initialize(params: Params) -> tuple[State, Output]:
 
 def step(store: PlanStore, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
     count = state.count + params.each
-    search_to(store, params.scene, params.request, count)
+    for number, corner in enumerate(params.scene.corners):
+        take_corner(store, number, corner)
+    search_to(store, params.request, count)
     return State(count), Output(status_of(store), path_of(store))
 
 

@@ -9,11 +9,12 @@ from typing import Any
 import shapely
 from shapely.geometry import Polygon
 
-from controller_fmu.planning.plan import PLANNING, begin, search_to
+from controller_fmu.planning.plan import PLANNING, begin, search_to, take_corner
 from controller_fmu.planning.plan_store import COUNT, KEPT_COUNT, STATUS, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, PlannedCar, Request, Scene, drive
+from controller_fmu.planning.task import CORNERS, Corner, PlannedCar, Request, drive
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
+from tests.planning.plan_model import Scene
 
 CAR = PlannedCar(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
 """The competition's car."""
@@ -47,12 +48,19 @@ def scene_of(polygons: Any) -> Any:
     return Scene(tuple(corners + [Corner()] * (CORNERS - len(corners))))
 
 
+def take(store: Any, scene: Any) -> None:
+    """Let the planner take over a scene."""
+    for number, corner in enumerate(scene.corners):
+        take_corner(store, number, corner)
+
+
 def plan(request: Request, scene: Any, store: Any = None, at_a_time: Any = 200, most: Any = 4000) -> Any:
     """Return the store after the search for ``request`` has ended."""
     store = new_store(PlanStore) if store is None else store
-    begin(store, scene, request)
+    take(store, scene)
+    begin(store, request)
     for count in range(at_a_time, most, at_a_time):
-        search_to(store, scene, request, count)
+        search_to(store, request, count)
         if store.mark[STATUS] != PLANNING:
             break
     return store

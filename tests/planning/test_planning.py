@@ -26,6 +26,7 @@ from tests.planning.scenes import (
     poses_along,
     read_case,
     scene_of,
+    take,
     tpcap_folder,
 )
 
@@ -121,13 +122,18 @@ def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split() -> None
     scene = scene_of(BOXES)
     once = plan(request, scene, at_a_time=60, most=61)
     again = new_store(PlanStore)
-    search_to(again, scene, other, 25)  # something else stands in the store
+    take(again, scene)
+    search_to(again, other, 25)  # something else stands in the store
     for count in (3, 17, 41, 60):
-        search_to(again, scene, request, count)
+        search_to(again, request, count)
     assert again.mark[COUNT] == once.mark[COUNT] == 60
     assert bits_of(again) == bits_of(once)
-    search_to(again, scene, request, 70)
-    search_to(again, scene, request, 60)  # back in time: done anew
+    search_to(again, request, 70)
+    search_to(again, request, 60)  # back in time: done anew
+    assert bits_of(again) == bits_of(once)
+    take(again, scene_of(BOXES[:1]))
+    take(again, scene)
+    search_to(again, request, 60)  # another scene meanwhile: done anew
     assert bits_of(again) == bits_of(once)
 
 

@@ -8,7 +8,7 @@ import pytest
 from controller_fmu.common.sensors import sensor_at
 from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.planning.task import CORNERS, Corner
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import MOST_LINES, put_line
@@ -17,7 +17,10 @@ from controller_fmu.valet.found.nearby import Nearby, Rest, hear_nearby, is_off_
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import look
 from controller_fmu.valet.signals import ValetInput
+from modelkit.store import new_store
 from modelkit.vocabulary import Pose
+from tests.planning.plan_model import Scene
+from tests.planning.scenes import take
 from tests.valet.test_valet_found import ACROSS, heard
 
 FAR_OFF = 5.0
@@ -39,12 +42,14 @@ def test_beyond_the_neighbours_what_is_much_nearer_than_known_stops_the_car_soon
     aside = Pose(-math.sin(at.heading), math.cos(at.heading))
     line = [Corner(x + end * aside.x, y + end * aside.y, 1) for end in (-0.1, 0.1)]
     scene = Scene((line[0], line[1]) + (Corner(),) * (CORNERS - 2))
+    store = new_store(PlanStore)
+    take(store, scene)
     echo = at.x + reading * math.cos(at.heading)
     b = echo - width - (0.05 if apart else -0.05)
     gap = Gap(GapLayout.ACROSS, Pose(b - 2.8, -2.0), Pose(b, -2.0), -0.5 * math.pi, width=2.8)
     readings = tuple(reading if number == sensor else FAR_OFF for number in range(12))
     inputs = ValetInput(odometry=Pose(), measured_speed=1.2, ultrasonic=readings)
-    blocked = look(inputs, Piece(1.0), scene, gap, params).blocked
+    blocked = look(store, inputs, Piece(1.0), gap, params).blocked
     assert blocked == (apart and reading < 0.5 and known != 0.2)
 
 

@@ -16,7 +16,7 @@ from controller_fmu.planning.task import Corner
 from controller_fmu.registry import System
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, ValetParams
 from controller_fmu.valet.phases import ValetPhase
-from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, remembered, scene_of
+from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, remembered, take_scene
 from controller_fmu.valet.signals import Planning, ValetInput
 from controller_fmu.valet.slot import body_of, goal_of
 from fmus.compiler import translate
@@ -27,6 +27,7 @@ from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import CModel
+from tests.planning.plan_model import Scene
 from tests.valet.looks import look
 
 STEP_NS = 10_000_000
@@ -59,7 +60,8 @@ def test_the_goal_is_in_the_middle_of_the_slot_that_is_given() -> None:
 
 def test_a_sensor_expects_what_shapely_sees() -> None:
     params = with_map(BOX)
-    scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
+    store = VALET.new_store()
+    take_scene(store, params, (Corner(),) * SEEN_CORNERS)
     box = Polygon(BOX)
     for heading in np.linspace(-math.pi, math.pi, 41):
         at = Pose(1.0, 0.3, float(heading))
@@ -70,12 +72,12 @@ def test_a_sensor_expects_what_shapely_sees() -> None:
         ]
         from_at = LineString([at[:2], at[:2]])
         seen = [from_at.distance(ray.intersection(box)) for ray in rays if ray.intersects(box)]
-        assert expected(at, scene, params) == pytest.approx(min(seen, default=reach), abs=0.02)
+        assert expected(store, at, params) == pytest.approx(min(seen, default=reach), abs=0.02)
 
 
 def test_only_what_the_map_does_not_have_is_in_the_way() -> None:
     params = with_map(BOX)
-    scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
+    scene = Scene(params.map)
     front = params.car.wheelbase + params.car.front_overhang
     pose = Pose(4.0 - front - 0.4, 0.0, 0.0)  # 0.4 m before the box
     readings = [5.0] * 12

@@ -8,7 +8,7 @@ from shapely.geometry import LineString, Polygon
 
 from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
+from controller_fmu.planning.task import CORNERS, Corner, drive
 from controller_fmu.sensing.around import AroundGap, lay_around
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.find_gap import gap_across
@@ -30,6 +30,7 @@ from controller_fmu.valet.slot import is_in_place
 from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
+from tests.planning.plan_model import Scene
 from tests.valet.looks import look
 from tests.valet.test_valet_search import WANTED, passed, row
 

@@ -110,6 +110,18 @@ def test_distance_to_polygons_is_that_of_shapely() -> None:
     assert polygon_clearances(np.zeros((1, 3)), [around], car)[0] < -29.0
 
 
+def test_of_many_polygons_the_nearest_counts() -> None:
+    """Those that are too far off to matter are left out, and nothing else."""
+    draw = np.random.default_rng(4)
+    car = CarOutline(3.8, 0.9, 0.95, 2.8)
+    places = draw.uniform(-12.0, 12.0, (60, 2))
+    polygons = [[tuple(at + draw.uniform(-1.5, 1.5, 2)) for _ in range(2 + n % 3)] for n, at in enumerate(places)]
+    for scale in (0.05, 3.0):
+        poses = draw.uniform(-1.0, 1.0, (30, 3)) * (scale, scale, 3.0)
+        alone = np.array([polygon_clearances(poses, [polygon], car) for polygon in polygons])
+        assert polygon_clearances(poses, polygons, car).tolist() == alone.min(axis=0).tolist()
+
+
 @TPCAP
 @pytest.mark.parametrize("number", range(1, 21))
 def test_cases_of_tpcap_driven_with_errors_touch_nothing(number: Any, files: Any, tmp_path: Path) -> None:

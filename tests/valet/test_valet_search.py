@@ -9,7 +9,7 @@ from shapely.geometry import LineString, Point
 
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.planning.task import CORNERS, Corner
 from controller_fmu.sensing import find_gap as module_of_gaps
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.find_gap import TwoWays, find_gap
@@ -29,6 +29,7 @@ from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.obstacle_map import box_corners
 from orchestrator.session.session import run_scenario
+from tests.planning.plan_model import Scene
 from tests.valet.looks import look
 from vehicle_fmu.scene import Obstacle, SceneParams
 from vehicle_fmu.ultrasonic import range_measurements

@@ -7,7 +7,7 @@ from typing import Any
 
 from fmus.compiler.constructs.arithmetic import in_64_bits
 from fmus.compiler.source.diagnostics import CannotError
-from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Mixed, describe
+from fmus.compiler.source.types import BOOL, FLOAT, INT, Array, Cells, Mixed, describe
 from fmus.compiler.target.aggregates import elements
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
@@ -122,7 +122,7 @@ def length(body: FunctionBody, node: ast.Call) -> Value:
     if len(node.args) != 1 or node.keywords:
         raise CannotError(node, "len() with these arguments", "give it one tuple")
     value = body.value(node.args[0])
-    if isinstance(value.kind, Array):
+    if isinstance(value.kind, Array | Cells):
         return literal(value.kind.length)
     if isinstance(value.kind, Mixed):
         return literal(len(value.kind.items))

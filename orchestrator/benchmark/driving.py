@@ -1,0 +1,70 @@
+"""A scene driven by the FMUs: on the kinematic body without errors, and on the double-track body with all of them."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.recording import Recording
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.contact import contact_facts
+from orchestrator.verdict.summary import summarize
+
+BODIES = {
+    "kinematic": ("vehicle.body=kinematic",),
+    "double_track": (
+        "vehicle.body=double_track",
+        "vehicle.steering.dead_time=40 ms",
+        "vehicle.steering.lag=50 ms",
+        "vehicle.steering.backlash=0.03",
+        "vehicle.drive.brake_lag=80 ms",
+        "vehicle.odometry={ideal: false, radius_error: 0.001, steering_offset: 0.0002, tick: 0.01}",
+        "vehicle.ultrasonic={noise: 0.01, dropout: 0.01}",
+    ),
+}
+"""Body -> what is set of the vehicle: the double track has errors of steering, brake, odometry and sensors."""
+
+
+class DrivenScene(NamedTuple):
+    """How a drive ended. Clearance: of the outline to everything, NaN if not known."""
+
+    parked: bool
+    reason: str
+    contact: bool
+    clearance: float
+    """[m]"""
+    length: float
+    """Distance travelled [m]."""
+    manoeuvres: int
+    """Moves between changes of direction."""
+    duration: float
+    """[s]"""
+
+
+def drive_scene(
+    name: str, body: str, files: Mapping[str, Path] | None, kind: str, interrupt: Interrupt | None = None
+) -> tuple[DrivenScene, Recording]:
+    """Return how the scene ``name`` (a file) was driven on ``body``, and the recording."""
+    scenario = load_scenario(name, BODIES[body])
+    ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    clearance = contact_facts(ran.recording, scenario).nearest
+    signals = ran.recording.signals
+    speed = signals["controller.speed_request"]
+    signs = np.sign(speed[speed != 0.0])
+    manoeuvres = int((signs[1:] != signs[:-1]).sum()) + 1 if len(signs) else 0
+    touched = math.isfinite(clearance) and clearance <= 0.0
+    drive = DrivenScene(
+        summary.is_done and not touched,
+        "" if summary.is_done else summary.reason,
+        touched,
+        clearance,
+        float(signals["vehicle.distance"][-1]),
+        manoeuvres,
+        summary.duration,
+    )
+    return drive, ran.recording

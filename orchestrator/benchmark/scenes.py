@@ -1,0 +1,135 @@
+"""The scenes of a benchmark planned and driven, one row each; rows are kept, so that a long benchmark goes on later."""
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from fmus.contents.description import project_version
+from fmus.files import write_whole
+from orchestrator.benchmark.driving import BODIES, DrivenScene, drive_scene
+from orchestrator.benchmark.planning import FoundPlan, plan_scene
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.master import Interrupt
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.text.errors import BadInput
+
+SHIPPED = "valet-"
+ROWS = "rows"
+SUFFIXES = (".yaml", ".yml")
+
+
+class Scene(NamedTuple):
+    """One scenario of a benchmark."""
+
+    name: str
+    group: str
+    """Folder that it was found in; ``shipped`` otherwise."""
+    file: str
+    """What ``apa run`` takes."""
+    corners: int
+    """Of its polygons."""
+    key: str
+    """Hash of all that its row depends on."""
+
+
+class SceneRow(NamedTuple):
+    """What became of a scene."""
+
+    scene: Scene
+    plan: FoundPlan
+    drives: dict[str, DrivenScene]
+    """By body."""
+
+    @property
+    def is_passed(self) -> bool:
+        """Whether it was planned, and parked without contact on every body."""
+        return self.plan.found and all(drive.parked and not drive.contact for drive in self.drives.values())
+
+
+def scenes_in(places: Sequence[str], bodies: Sequence[str]) -> list[Scene]:
+    """Return the scenes that folders, files and names mean; without any, those shipped. Raises ``BadInput``."""
+    found: list[tuple[str, str]] = []
+    for place in places:
+        folder = Path(place)
+        if folder.is_dir():
+            files = sorted((item for item in folder.iterdir() if item.suffix in SUFFIXES), key=_natural)
+            if not files:
+                raise BadInput("no scenario (*.yaml) in this folder; apa import writes them", file=folder)
+            found += [(folder.resolve().name, str(file)) for file in files]
+        else:
+            found.append((folder.resolve().parent.name if folder.is_file() else "shipped", place))
+    if not places:
+        found = [("shipped", name) for name in scenario_names() if name.startswith(SHIPPED)]
+    sources = sources_hash()
+    return [_scene(group, name, bodies, sources) for group, name in dict.fromkeys(found)]
+
+
+def _scene(group: str, name: str, bodies: Sequence[str], sources: str) -> Scene:
+    scenario = load_scenario(name)
+    if scenario.target is None:
+        raise BadInput("this scenario has no target to plan a path to", file=scenario.file, key="target")
+    said = [scenario.model_dump_json(), [BODIES[body] for body in bodies], sources, project_version()]
+    key = hashlib.sha256(json.dumps(said).encode()).hexdigest()[:32]
+    return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key)
+
+
+def _natural(path: Path) -> tuple[int, str]:
+    return len(path.stem), path.name
+
+
+def rows_of(
+    scenes: Sequence[Scene],
+    bodies: Sequence[str],
+    fmus: tuple[Mapping[str, Path] | None, str],
+    out: Path,
+    interrupt: Interrupt,
+) -> Iterator[SceneRow]:
+    """Yield the row of each scene, kept in ``out`` or new; none begins after an interrupt.
+
+    ``fmus``: files of ours, and their kind.
+    """
+    for scene in scenes:
+        if interrupt.requested:
+            return
+        file = out / ROWS / f"{scene.group}-{scene.name}.json"
+        row = read_row(file, scene)
+        if row is None:
+            plan = plan_scene(load_scenario(scene.file))
+            drives = {}
+            for body in bodies if plan.found else ():
+                drives[body], _ = drive_scene(scene.file, body, *fmus, interrupt)
+                if interrupt.requested:
+                    return
+            row = SceneRow(scene, plan, drives)
+            write_whole(file, json.dumps(row_as_json(row), indent=1) + "\n")
+        yield row
+
+
+def read_row(file: Path, scene: Scene) -> SceneRow | None:
+    """Return the row that an earlier benchmark has kept of the same scene, models and errors; None without one."""
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        if data["key"] != scene.key:
+            return None
+        plan = FoundPlan(**{**data["plan"], "sample_times": tuple(data["plan"]["sample_times"])})
+        drives = {body: DrivenScene(**_numbers(drive)) for body, drive in data["drives"].items()}
+    except (OSError, ValueError, TypeError, KeyError):
+        return None
+    return SceneRow(scene, plan, drives)
+
+
+def _numbers(drive: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: math.nan if value is None else value for name, value in drive.items()}
+
+
+def row_as_json(row: SceneRow) -> dict[str, Any]:
+    """Return a row as plain data: SI units, null for what is not known."""
+    drives = {
+        body: {name: None if value != value else value for name, value in drive._asdict().items()}
+        for body, drive in row.drives.items()
+    }
+    plan = {**row.plan._asdict(), "sample_times": list(row.plan.sample_times)}
+    return {**row.scene._asdict(), "passed": row.is_passed, "plan": plan, "drives": drives}

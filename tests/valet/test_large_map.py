@@ -1,0 +1,107 @@
+"""The valet with a large map: the code of the valet with longer arrays, and so the same bits."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from controller_fmu import APART
+from controller_fmu.planning.ladder import window_of
+from controller_fmu.planning.plan import PLANNED, search_to, status_of
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.planning.setting import add_edges
+from controller_fmu.planning.task import Corner, Request
+from controller_fmu.valet.large_map import LargePlanStore
+from controller_fmu.valet.params import ValetSystem
+from fmus.native.libraries import load_model, memory_size
+from modelkit.store import columns_of, new_store
+from modelkit.variables import flatten, variables, with_values
+from modelkit.vocabulary import Pose
+from orchestrator.benchmark.parkbench import read_parkbench
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.scenario.load_scenario import load_scenario
+from tests.benchmark.parkbench_scene import large_scene, scene, write
+from tests.planning.plan_model import Scene
+from tests.planning.scenes import CAR, scene_of, take
+
+NATIVE = pytest.mark.skipif(not can_compile(), reason="needs a C compiler: pip install ziglang")
+
+
+def test_more_corners_than_the_small_map_has_are_planned_around_in_python() -> None:
+    """Two rows of posts, each a square of 4 cm, between which the car drives."""
+    row = [(0.25 * n, y) for n in range(-25, 25) for y in (-2.0, 2.0)]
+    posts = [[(x, y), (x + 0.04, y), (x + 0.04, y + 0.04), (x, y + 0.04)] for x, y in row]
+    assert 4 * len(posts) == 400
+    store = new_store(LargePlanStore)
+    request = Request(Pose(-6.0, 0.0, 0.0), Pose(3.0, 0.0, 0.0), CAR, 0.1)
+    take(store, Scene(tuple(Corner(x, y, number + 1) for number, post in enumerate(posts) for x, y in post)))
+    for count in range(1, 200):
+        search_to(store, request, count)
+        if status_of(store):
+            break
+    assert status_of(store) == PLANNED
+
+
+@pytest.mark.parametrize(("points", "edges"), [(2, 1), (3, 3), (4, 4)])
+def test_a_wall_has_one_edge(points: int, edges: int) -> None:
+    polygon = [(1.0, 5.0), (2.0, 5.0), (2.0, 6.0), (1.0, 6.0)][:points]
+    store = new_store(PlanStore)
+    request = Request(Pose(-6.0, 0.0, 0.0), Pose(3.0, 0.0, 0.0), CAR, 0.1)
+    take(store, scene_of([polygon, polygon]))
+    assert add_edges(store, request.goal, window_of(request)) == 2 * edges
+
+
+def test_only_arrays_of_the_scene_are_longer() -> None:
+    own, large = columns_of(PlanStore), columns_of(LargePlanStore)
+    assert list(own) == list(large)
+    longer = {name for name in own if large[name].length > own[name].length}
+    assert longer == {
+        *("edge_x1", "edge_y1", "edge_x2", "edge_y2", "near_edge"),
+        *("corner_x", "corner_y", "corner_of", "around_x", "around_y", "around_of"),
+    }
+    small, big = (variables(APART[choice].params) for choice in ValetSystem)
+    assert len([item for item in small if item.name.startswith("map[")]) == 3 * 360
+    assert {item.name for item in big} - {item.name for item in small} == {
+        f"map[{place}].{axis}" for place in range(361, 2049) for axis in ("x", "y", "polygon")
+    }
+
+
+def outputs(model: Any, scenario: Any, samples: int) -> Any:
+    """Return all outputs of a standing car's valet, sample by sample."""
+    library, count = load_model(model), len(variables(model.outputs))
+    given = {name: value for name, value in scenario.controller.items() if name != "system"}
+    params = np.array(flatten(with_values(model.params, given)), dtype=float)
+    u, y = np.zeros(len(variables(model.inputs))), np.zeros(count)
+    names = [item.name for item in variables(model.inputs)]
+    for axis in ("x", "y", "heading"):
+        u[names.index(f"odometry.{axis}")] = scenario.vehicle[f"start.{axis}"]
+    memory = np.zeros(memory_size(library), dtype=np.uint8)
+    library.model_start(memory.ctypes.data, params.ctypes.data, y.ctypes.data)
+    found = []
+    for _ in range(samples):
+        library.model_step(memory.ctypes.data, u.ctypes.data, y.ctypes.data, 10_000_000)
+        found.append(y.tobytes())
+    return found
+
+
+@NATIVE
+@pytest.mark.slow
+def test_a_small_scene_has_the_bits_of_the_valet(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text(yaml.safe_dump(read_parkbench(write(tmp_path / "a.json", scene()))))
+    scenario = load_scenario(str(tmp_path / "a.yaml"))
+    small, large = (outputs(APART[choice], scenario, 60) for choice in ValetSystem)
+    assert small == large
+    assert len(set(small)) > 5
+
+
+@NATIVE
+@pytest.mark.slow
+def test_a_scene_of_many_corners_is_planned(tmp_path: Path) -> None:
+    from orchestrator.benchmark.planning import plan_scene
+
+    (tmp_path / "a.yaml").write_text(yaml.safe_dump(read_parkbench(write(tmp_path / "a.json", large_scene(0.055)))))
+    plan = plan_scene(load_scenario(str(tmp_path / "a.yaml")), passes=1)
+    assert plan.found
+    assert plan.margin == pytest.approx(0.1)

@@ -20,7 +20,7 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign, fitting, fmu_of, load_fitting, parameters_of
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import Summary, summarize
 
 if TYPE_CHECKING:
@@ -94,10 +94,10 @@ class Run:
         """
         from orchestrator.report.replay import write_replay
         from orchestrator.report.results import LOG, PAGE, write_picture, write_summary
-        from orchestrator.text.owned import owned
+        from orchestrator.text.owned import lock_folder
 
         path = Path(folder)
-        with owned(path):
+        with lock_folder(path):
             if (path / LOG).is_file():
                 self._refuse_another(path / LOG)
             write_summary(path, self.summary)
@@ -163,7 +163,7 @@ def record_scenario(
 
 
 def with_foreign(scenario: str | Path | Scenario, changes: Changes | None, given: Foreign) -> tuple[Scenario, Foreign]:
-    """Return a scenario, and the FMUs of others that it is run with: ``given`` ones and those of its own system."""
+    """Return a scenario, and the FMUs of others that it is run with: ``given`` ones and its own system's."""
     if not isinstance(scenario, Scenario):
         fitted = load_fitting(str(scenario), _sets(changes), given)
         return fitted.scenario, fitted.foreign
@@ -178,7 +178,7 @@ def read_log(path: Path | str) -> Run:
     """Return the run in a log of ours, or in a run's folder. Raises ``BadInput``."""
     file = log_file(str(path))
     recording = read_recording(file)
-    scenario, note = logged(recording, str(file), file.stem)
+    scenario, note = read_logged_run(recording, str(file), file.stem)
     return Run(scenario, recording, summarize(recording, scenario, 0.0, note))
 
 

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from apa_cosim.runs import Run, run
-from orchestrator.commands.sweep import chosen_study
+from orchestrator.commands.sweep import select_study
 from orchestrator.sweep.repeat import write_scenario
 from orchestrator.sweep.sweep import Options
 from orchestrator.sweep.sweep import sweep as run_study
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import RunError, suggestion
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,10 +78,10 @@ def sweep(
     ``NotRunError`` if runs could not take place.
     """
     sets = [f"{key}={value}" for key, value in (changes or {}).items()]
-    chosen = chosen_study(str(study), sets)
+    chosen = select_study(str(study), sets)
     chosen = chosen._replace(design=chosen.design.part(first, every))
     out = Path(folder) if folder is not None else Path("runs") / chosen.name
-    with owned(out):
+    with lock_folder(out):
         swept = run_study(chosen, out, Options(resume=resume))
     if swept.not_run is not None:
         raise swept.not_run

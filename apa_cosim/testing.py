@@ -17,7 +17,7 @@ from orchestrator.session.foreign import Foreign
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, load_step_test
-from orchestrator.steptest.verdict import judged
+from orchestrator.steptest.verdict import judge_step_test
 from orchestrator.text.renamed_names import API
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import sentence
@@ -75,7 +75,7 @@ class OpenLoopRun:
         """Return the run; fails if it misses one of ``expectations``, written as in a step test's ``expect``."""
         __tracebackhide__ = True
         test = StepTest.model_validate({**self._test.model_dump(), "expect": [dict(item) for item in expectations]})
-        assert_met(judged(test, self.recording))
+        assert_met(judge_step_test(test, self.recording))
         return self
 
 

@@ -13,7 +13,7 @@ from benchmarks.bench_sweep import bound
 from benchmarks.results import SKIPPED, record, size
 from docs.pictures import FLAGS
 from orchestrator.live.page import live_page
-from orchestrator.live.situation import shipped
+from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.batch import run_batch
 
@@ -37,7 +37,7 @@ def main() -> None:
     from playwright.sync_api import sync_playwright
 
     path = Path(tempfile.mkdtemp()) / "live.html"
-    path.write_text(live_page(shipped()), encoding="utf-8")
+    path.write_text(live_page(page_scenarios()), encoding="utf-8")
     one = len(live_page([load_scenario("guo2015-case4")]).encode())
     print(f"page: {path.stat().st_size / 1e3:.0f} kB with all scenarios, {one / 1e3:.0f} kB with one")
     record("page with one scenario", one / 1e3, "kB")

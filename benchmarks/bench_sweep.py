@@ -22,7 +22,7 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import compiled, run_batch
+from orchestrator.sweep.batch import compile_models, run_batch
 from orchestrator.sweep.disturbed import fault_numbers
 from orchestrator.sweep.engine import cores
 from orchestrator.sweep.job import Chunk, arrays, make_job
@@ -69,7 +69,7 @@ def rates() -> None:
     job, chunk = bound(MANOEUVRES)
     begun = time.perf_counter()
     model = Scenario(**job.scenario)
-    rows = compiled(tuple(job.measures), model)
+    rows = compile_models(tuple(job.measures), model)
     print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
     (parameters, times), faults = arrays(job, chunk), fault_numbers(job, chunk, model)
     out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))

@@ -21,7 +21,7 @@ from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.geometry import CarOutline, described
+from orchestrator.verdict.geometry import CarOutline, vehicle_parameters
 from orchestrator.verdict.polygons import polygon_clearances
 from orchestrator.verdict.summary import summarize
 
@@ -69,7 +69,7 @@ def driven(scenario: Any, files: Any) -> Any:
     ran = run_scenario(scenario, files, kind="native")
     signals = ran.recording.signals
     poses = np.column_stack([signals[f"vehicle.pose.{axis}"] for axis in ("x", "y", "heading")])
-    car = CarOutline.of(described(scenario, ran.recording.parameters_of("vehicle")))
+    car = CarOutline.of(vehicle_parameters(scenario, ran.recording.parameters_of("vehicle")))
     clear = np.nanmin([*polygon_clearances(poses, scenario.obstacles, car), signals["vehicle.clearance"].min()])
     speed = signals["controller.speed_request"]
     signs = np.sign(speed[speed != 0.0])

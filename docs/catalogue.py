@@ -5,8 +5,8 @@ from tempfile import TemporaryDirectory
 
 from marked import put
 
-from orchestrator.catalogue.run import judged
-from orchestrator.catalogue.show import markdown, said
+from orchestrator.catalogue.run import judge_standards
+from orchestrator.catalogue.show import count_text, markdown
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.master import Interrupt
 from orchestrator.session.foreign import Foreign
@@ -17,8 +17,8 @@ def tables(words: list[str]) -> list[str]:
     """Return the tables of the standards that ``words`` mean, after running what tests them."""
     bench = Bench(fmu_files("native", print), "native", Foreign(), [], Interrupt())
     with TemporaryDirectory() as folder:
-        verdicts = judged(words, bench, Path(folder))
-    return [f"In all: {said(verdicts)}.", "", markdown(verdicts)]
+        verdicts = judge_standards(words, bench, Path(folder))
+    return [f"In all: {count_text(verdicts)}.", "", markdown(verdicts)]
 
 
 if __name__ == "__main__":

@@ -34,10 +34,10 @@ from orchestrator.grid.parking_world.factors import FACTORS as PARKING_WORLD  # 
 from orchestrator.grid.world.factors import FACTORS as APA_WORLD  # noqa: E402
 from orchestrator.live.page import NAME as LIVE  # noqa: E402
 from orchestrator.live.page import write_live  # noqa: E402
-from orchestrator.live.situation import shipped  # noqa: E402
+from orchestrator.live.situation import page_scenarios  # noqa: E402
 from orchestrator.papers.figure_files import gallery_text  # noqa: E402
 from orchestrator.papers.paper_figures import FIGURES  # noqa: E402
-from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
+from orchestrator.scenario.catalogue import collapse_arrays, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.files import ROOM  # noqa: E402
@@ -49,7 +49,7 @@ from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbou
 from orchestrator.sweep.study.space import Factor  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
-from orchestrator.verdict.limit_text import required_text  # noqa: E402
+from orchestrator.verdict.limit_text import requirement_text  # noqa: E402
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
@@ -65,7 +65,7 @@ def main() -> None:
     if can_build():
         for system in ("", *APART):
             page = folder / (f"live-{system}.html" if system else LIVE)
-            scenarios = shipped(system)
+            scenarios = page_scenarios(system)
             if scenarios:
                 write_live(page, scenarios)
                 print(page.relative_to(ROOT))
@@ -144,7 +144,7 @@ def signal_table(items: list[Variable], starts: bool) -> str:
     """Return a table of variables; array elements that differ only in their number share a row."""
     head = ["name", "unit", "meaning"] + (["default", "range", "source"] if starts else ["type"])
     rows = []
-    for item, count in collapsed(items):
+    for item, count in collapse_arrays(items):
         signal = item.signal
         text = signal.text + (
             f" ([{signal.states.__name__}](#{signal.states.__name__.lower()}))" if signal.states else ""
@@ -238,7 +238,7 @@ def scenarios_page() -> str:
     cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
     for path in sorted((ROOM / "requirements").glob("*.yaml")):
-        rows = [[item.id, f"`{item.signal}`", required_text(item), item.source] for item in read_requirements(path)]
+        rows = [[item.id, f"`{item.signal}`", requirement_text(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
     for name, factors in {"apa-world": APA_WORLD, "parking-world": PARKING_WORLD}.items():
         rows = [factor_row(factor) for factor in factors]

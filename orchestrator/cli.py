@@ -16,7 +16,7 @@ from typing import Any
 
 from orchestrator.commands import COMMANDS
 from orchestrator.text.command_parser import CommandParser
-from orchestrator.text.ends import ended_in_time
+from orchestrator.text.ends import interrupt_within_limit
 from orchestrator.text.errors import SCARCE_RESOURCES
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
@@ -114,7 +114,7 @@ def _command(words: list[str]) -> int:
     _tolerant_streams()
     from orchestrator.text.console import printable_streams
 
-    with printable_streams(), ended_in_time() as interrupted:
+    with printable_streams(), interrupt_within_limit() as interrupted:
         try:
             try:
                 return _run(words)
@@ -123,9 +123,9 @@ def _command(words: list[str]) -> int:
         except (Exception, KeyboardInterrupt) as error:
             if _is_scarce(error) and not interrupted.is_set():
                 error = MemoryError() if not isinstance(error, OSError) else error
-            from orchestrator.text.failures import explained
+            from orchestrator.text.failures import exit_code_and_message
 
-            code, line = explained(KeyboardInterrupt() if interrupted.is_set() else error, words)
+            code, line = exit_code_and_message(KeyboardInterrupt() if interrupted.is_set() else error, words)
             _complain(line)
             _let_go()
             return code

@@ -14,7 +14,7 @@ import numpy as np
 from orchestrator.bakeoff.figure import COLOURS
 from orchestrator.drawing.save import save
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.fields import find_field
@@ -92,7 +92,7 @@ def study(drivers: int = 10_000, seed: int = 1) -> Study:
         "drivers": drivers,
         "seed": seed,
     }
-    within = {limit: list(shipped_requirements(name)) for limit, name in LIMITS.items()}
+    within = {limit: list(library_requirements(name)) for limit, name in LIMITS.items()}
     return Study(scenario, with_samples(design, samples), content, within=within)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from orchestrator.bakeoff.entries import LABELS
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.sweep.columns import WITHIN
 
 REFUSED = "no_path"
@@ -46,7 +46,7 @@ class Drive(NamedTuple):
 
 def exact_limits() -> tuple[Requirement, ...]:
     """Return the limits of an exact drive: lateral, heading."""
-    return shipped_requirements("house", "final lateral position", "final heading")
+    return library_requirements("house", "final lateral position", "final heading")
 
 
 def drives(columns: Mapping[str, Any]) -> list[Drive]:

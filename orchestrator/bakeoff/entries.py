@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
@@ -94,7 +94,7 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
         told = {}
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
-    limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
+    limits = [item for name in LIMITS for item in library_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **told}
     return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls}).with_requirements(
         limits

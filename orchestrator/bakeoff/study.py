@@ -71,7 +71,7 @@ def report(table: Table, folder: Path) -> int:
     """Print the comparison and write its picture. Returns 0."""
     found = drives({name: table.column(name) for name in table.names()})
     to = console()
-    to.print(_compared(found))
+    to.print(_comparison_lines(found))
     for note in FOOTNOTES:
         to.print(f"- {escape(note)}")
     to.print(f"picture in {draw(found, folder / 'bakeoff.png')}", markup=False)
@@ -84,7 +84,7 @@ def _times(columns: Columns) -> Array:
     return times
 
 
-def _compared(found: list[Drive]) -> Printed:
+def _comparison_lines(found: list[Drive]) -> Printed:
     """Return a line for each slot and controller."""
     table = Printed(box=None, title="the same slots, cars, bodies, starts and disturbances")
     for head in (*HEADS, *MORE):

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.scenario.files import shipped
+from orchestrator.scenario.files import library_names
 from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.scenario.scenario import Outcome
 from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.text.yaml_file import explain, read_mapping
@@ -52,18 +52,18 @@ class Clause(_CataloguePart):
             raise BadInput("expected either what tests it, or not_tested: why nothing does", key=self.id)
         if self.scenarios and not (self.outcome or self.requirements):
             raise BadInput("expected an outcome or limits of its scenarios", key=self.id)
-        _known(self.id, self.scenarios, scenario_names(), "scenario")
-        _known(self.id, self.step_tests, [path.stem for path in STEP_TESTS.glob("*.yaml")], "step test")
-        _known(self.id, list(self.requirements), shipped("requirements"), "set of requirements")
+        _check_names(self.id, self.scenarios, scenario_names(), "scenario")
+        _check_names(self.id, self.step_tests, [path.stem for path in STEP_TESTS.glob("*.yaml")], "step test")
+        _check_names(self.id, list(self.requirements), library_names("requirements"), "set of requirements")
         for name, ids in self.requirements.items():
             if isinstance(ids, list):
-                _known(self.id, ids, [item.id for item in shipped_requirements(name)], f"limit of {name}")
+                _check_names(self.id, ids, [item.id for item in library_requirements(name)], f"limit of {name}")
         return self
 
-    def required_limits(self) -> list[Requirement]:
+    def limits_to_keep(self) -> list[Requirement]:
         """Return the limits that its runs have to keep."""
         named = {name: ids if isinstance(ids, list) else [] for name, ids in self.requirements.items()}
-        return [item for name, ids in named.items() for item in shipped_requirements(name, *ids)]
+        return [item for name, ids in named.items() for item in library_requirements(name, *ids)]
 
 
 class Standard(_CataloguePart):
@@ -80,7 +80,7 @@ class Standard(_CataloguePart):
     entries: list[Clause] = Field(min_length=1)
 
     @model_validator(mode="after")
-    def _told_apart(self) -> "Standard":
+    def _check_unique_ids(self) -> "Standard":
         names = [entry.id for entry in self.entries]
         for name in names:
             if names.count(name) > 1:
@@ -93,7 +93,7 @@ def is_catalogue(word: str) -> bool:
     return word == NAME or word.startswith(f"{NAME}/")
 
 
-def chosen_standards(words: list[str]) -> list[Standard]:
+def select_standards(words: list[str]) -> list[Standard]:
     """Return the standards that words such as ``catalogue`` and ``catalogue/gbt*`` mean. Raises ``BadInput``."""
     patterns = [word.removeprefix(NAME).removeprefix("/") or "*" for word in words]
     found: dict[str, Standard] = {}
@@ -115,7 +115,7 @@ def read_standard(path: Path) -> Standard:
         raise explain(error, path, list(Standard.model_fields)) from None
 
 
-def _known(entry: str, names: list[str], known: list[str], what: str) -> None:
+def _check_names(entry: str, names: list[str], known: list[str], what: str) -> None:
     for name in names:
         if name not in known:
             raise BadInput(f"no {what} {name!r}{suggestion(name, known)}", key=entry)

@@ -5,11 +5,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
-from orchestrator.catalogue.entries import STEP_TESTS, chosen_standards
-from orchestrator.catalogue.show import printed, said, write_catalogue
+from orchestrator.catalogue.entries import STEP_TESTS, select_standards
+from orchestrator.catalogue.show import count_text, verdict_tables, write_catalogue
 from orchestrator.catalogue.verdicts import MISSED, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.suite.junit import write_junit
-from orchestrator.suite.suite import Bench, Tested, run_tests, tested_by
+from orchestrator.suite.suite import Bench, SuiteResult, provenance_of, run_tests
 from orchestrator.text.console import console
 from orchestrator.text.errors import NOT_PARKED, PARKED
 
@@ -21,11 +21,11 @@ class Catalogue:
     """Chosen standards, and the verdicts on them as they come."""
 
     def __init__(self, words: list[str]) -> None:
-        self.verdicts = verdicts_of(chosen_standards(words))
+        self.verdicts = verdicts_of(select_standards(words))
         scenarios, tests = runs_of(self.verdicts)
         self._scenarios = scenarios
         self._tests = [str(STEP_TESTS / f"{name}.yaml") for name in tests]
-        self._kept: list[Tested] = []
+        self._kept: list[SuiteResult] = []
 
     @property
     def count(self) -> int:
@@ -43,7 +43,7 @@ class Catalogue:
 
     def about(self, command: str) -> dict[str, str]:
         """Return what was tested, when and how."""
-        return tested_by(self._kept, command)
+        return provenance_of(self._kept, command)
 
     def write(self, junit: Path, page: Path, about: Mapping[str, str] = NOTHING) -> None:
         """Write JUnit and the page; before the runs are done, JUnit with an error for each standard."""
@@ -59,12 +59,12 @@ class Catalogue:
             rows = [item.plain() for item in self.verdicts]
             print(json.dumps({"counts": counts(self.verdicts), "about": dict(about), "entries": rows}, indent=2))
             return
-        for table in printed(self.verdicts):
+        for table in verdict_tables(self.verdicts):
             console().print(table)
             console().print()
         lost = [item for item in self._kept if item.could_not_run]
         why = f"; {len(lost)} runs could not take place: {lost[0].error}" if lost else ""
-        console().print(f"{said(self.verdicts)}{why}; results in {out}", markup=False, soft_wrap=True)
+        console().print(f"{count_text(self.verdicts)}{why}; results in {out}", markup=False, soft_wrap=True)
 
     def code(self) -> int:
         """Return the exit code: 2 or 3 for a scenario that could not be run, 1 if an entry is missed, else 0."""
@@ -73,7 +73,7 @@ class Catalogue:
         return worst or (NOT_PARKED if counts(self.verdicts)[MISSED] else PARKED)
 
 
-def judged(words: list[str], bench: Bench, out: Path) -> list[ClauseVerdict]:
+def judge_standards(words: list[str], bench: Bench, out: Path) -> list[ClauseVerdict]:
     """Return the verdicts on the standards that ``words`` mean, with their runs in ``out``."""
     catalogue = Catalogue(words)
     catalogue.run([], bench, out, 1, lambda done: None)

@@ -28,12 +28,12 @@ STYLE = """
 HEADS = ("clause", "required", "confidence", "verdict", "why")
 
 
-def said(verdicts: list[ClauseVerdict]) -> str:
+def count_text(verdicts: list[ClauseVerdict]) -> str:
     """Return the counts in words."""
     return ", ".join(f"{count} {word}" for word, count in counts(verdicts).items())
 
 
-def printed(verdicts: list[ClauseVerdict]) -> list[Table]:
+def verdict_tables(verdicts: list[ClauseVerdict]) -> list[Table]:
     """Return a table for each standard."""
     tables = []
     for name, items in groupby(verdicts, key=lambda item: item.standard.standard):
@@ -56,7 +56,7 @@ def write_catalogue(path: Path, verdicts: list[ClauseVerdict], about: Mapping[st
         parts.append(f'{head}<p class="soft">{html.escape(standard.source)}.</p>{_table(list(items))}')
     facts = "".join(f"<dt>{html.escape(key)}</dt><dd>{html.escape(text)}</dd>" for key, text in about.items())
     kind = "bad" if counts(verdicts)[MISSED] else "good"
-    body = BODY.format(kind=kind, verdict=said(verdicts), facts=facts, parts="\n".join(parts))
+    body = BODY.format(kind=kind, verdict=count_text(verdicts), facts=facts, parts="\n".join(parts))
     write_whole(path, still_page("Catalogue of parking requirements", body, STYLE))
 
 
@@ -86,12 +86,12 @@ def _row(item: ClauseVerdict) -> str:
     kind = {MET: "good", MISSED: "bad"}.get(item.word, "warn")
     asked = f"<b>{html.escape(item.entry.id)}</b><br>{html.escape(item.entry.text)}"
     pill = f'<span class="pill {kind}">{item.word}</span>'
-    why = "".join(_tried(tried) for tried in item.tried) or f"<li>{html.escape(item.why)}</li>"
+    why = "".join(_run_item(tried) for tried in item.tried) or f"<li>{html.escape(item.why)}</li>"
     cells = (html.escape(item.entry.clause or "not known"), asked, item.entry.sure, pill, f"<ul>{why}</ul>")
     return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
 
 
-def _tried(tried: ClauseRun) -> str:
+def _run_item(tried: ClauseRun) -> str:
     name = html.escape(tried.name)
     texts = [tried.error, *tried.missed, *(f"not measured: {name}" for name in tried.unmeasured)]
     texts += [f"{check.id}: {sentence(check)}" for check in tried.checks if check.evaluated and check.passed]

@@ -7,7 +7,7 @@ from orchestrator.catalogue.entries import Clause, Standard
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.suite.junit import Case, Suite
-from orchestrator.suite.suite import Tested
+from orchestrator.suite.suite import SuiteResult
 from orchestrator.text.errors import BAD_INPUT
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.limit_text import sentence
@@ -86,12 +86,12 @@ def runs_of(verdicts: list[ClauseVerdict]) -> tuple[list[str], list[str]]:
     return list(dict.fromkeys(scenarios)), list(dict.fromkeys(tests))
 
 
-def note(verdicts: list[ClauseVerdict], tested: Tested) -> None:
+def note(verdicts: list[ClauseVerdict], tested: SuiteResult) -> None:
     """Add what a run says of each entry that it is named by."""
     name, recording = tested.scenario.name, tested.recording
     for item in verdicts:
         if name in item.entry.step_tests and not tested.could_not_run:
-            item.tried.append(_stepped(name, tested))
+            item.tried.append(_run_of_step_test(name, tested))
         elif name in item.entry.scenarios:
             if tested.could_not_run:
                 continue
@@ -99,10 +99,10 @@ def note(verdicts: list[ClauseVerdict], tested: Tested) -> None:
                 item.tried.append(ClauseRun(name, "", [], [], error=tested.error or "was not run"))
             else:
                 outcome = (tested.summary.outcome, tested.summary.reason)
-                item.tried.append(_tried(item.entry, tested.scenario, recording, *outcome))
+                item.tried.append(_run_of_scenario(item.entry, tested.scenario, recording, *outcome))
 
 
-def _stepped(name: str, tested: Tested) -> ClauseRun:
+def _run_of_step_test(name: str, tested: SuiteResult) -> ClauseRun:
     """Return what a step test says; one that an FMU does not have the variables for cannot be judged."""
     if tested.code == BAD_INPUT:
         return ClauseRun(name, "", [], [tested.error])
@@ -110,8 +110,8 @@ def _stepped(name: str, tested: Tested) -> ClauseRun:
     return ClauseRun(name, "", missed, [], error=tested.error)
 
 
-def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
-    requirements = [*entry.required_limits(), scenario.contact_rule]
+def _run_of_scenario(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
+    requirements = [*entry.limits_to_keep(), scenario.contact_rule]
     checks = judge(requirements, recording, facts_of(recording, scenario), scenario.file)
     missed = [f"{check.id}: {sentence(check)}" for check in checks if check.evaluated and not check.passed]
     if entry.outcome and outcome not in entry.outcome:

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from orchestrator.cosim.fmu_files import build, build_into, wanted_platforms
+from orchestrator.cosim.fmu_files import build, build_into, select_platforms
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput, suggestion
@@ -93,7 +93,7 @@ def _own_model(arguments: argparse.Namespace) -> list["Built"]:
         raise BadInput("a model of your own needs a place: give --out", key="--model")
     asked = arguments.fmus or arguments.fmi
     kinds = _kinds(arguments) if asked else [*kinds_here(), "c"]
-    platforms = wanted_platforms(arguments.platform or ())
+    platforms = select_platforms(arguments.platform or ())
     try:
         model = own_model(arguments.model)
         with working(f"building {model.name}"):

@@ -11,7 +11,7 @@ from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit
 from orchestrator.text.console import console, say
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.numbers import facts_of
 
 EXAMPLES = """examples:
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge and print. Returns 0 if every required requirement is met, 1 if not."""
     recording = read_log(arguments.log)
-    scenario, note = logged(recording, str(arguments.log))
+    scenario, note = read_logged_run(recording, str(arguments.log))
     if note:
         say(note)
     facts = facts_of(recording, scenario)

@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     logs = [arguments.a, arguments.b, *arguments.more]
     runs = [read_log(log) for log in logs]
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
-    for pattern in tolerances.unused([*(name for run in runs for name in run.signals), DURATION]):
+    for pattern in tolerances.patterns_without_match([*(name for run in runs for name in run.signals), DURATION]):
         say(f"apa: warning: {arguments.tolerances}: {pattern}: no signal fits, so it changes nothing")
     found = [compare(runs[0], run, tolerances, arguments.signals) for run in runs[1:]]
     if arguments.html:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fmus.files import write_whole
 from orchestrator.text.console import console, say, working
 from orchestrator.text.errors import NOT_PARKED, PARKED, BadInput
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 from orchestrator.text.quantities import number
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = identify(drive, base.values, [item.strip() for item in names])
     out: Path = arguments.out or Path("runs") / f"identify-{name}"
     content = {"log": str(log), **as_json(found)}
-    with owned(out):
+    with lock_folder(out):
         write_whole(out / "identification.json", json.dumps(content, indent=2) + "\n")
         if found.values:
             write_car(out / "car.yaml", base, found.values, f"apa identify {log.name}")

@@ -9,14 +9,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from orchestrator.commands import STUDIES
-from orchestrator.scenario.catalogue import Entry, chosen, entries, range_text, start_text, systems
+from orchestrator.scenario.catalogue import Entry, entries, match_entries, range_text, start_text, systems
 from orchestrator.scenario.files import ROOM, car_names
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.sweep.study.study_file import study_names
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.limit_text import required_text
+from orchestrator.verdict.limit_text import requirement_text
 
 EXAMPLES = """examples:
   apa list                             scenarios, controllers, cars, requirements, studies
@@ -109,7 +109,7 @@ def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
                         "set": name,
                         "id": item.id,
                         "signal": item.signal,
-                        "required": required_text(item),
+                        "required": requirement_text(item),
                         "source": item.source,
                     }
                 )
@@ -124,13 +124,13 @@ def _runs(folder: str | None) -> tuple[dict[str, str], Rows]:
 
 
 def _variables(*roles: str) -> Any:
-    def listed(pattern: str | None) -> tuple[dict[str, str], Rows]:
-        found = chosen(entries(*roles), pattern)
+    def table_of(pattern: str | None) -> tuple[dict[str, str], Rows]:
+        found = match_entries(entries(*roles), pattern)
         rows = [_row(item) for item in found]
         values = {"default": "default", "range": "range"} if "parameter" in roles else {"role": "role"}
         return {"name": "name", **values, "unit": "unit", "text": "meaning"}, rows
 
-    return listed
+    return table_of
 
 
 def _row(item: Entry) -> dict[str, Any]:

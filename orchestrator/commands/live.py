@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from orchestrator.live.page import NAME, write_live
-from orchestrator.live.situation import shipped, why_not
+from orchestrator.live.situation import page_scenarios, why_not
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.suite.suite import chosen
+from orchestrator.suite.suite import select_scenarios
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 
@@ -34,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page. Returns 0, or 2 where nothing can be compiled."""
     if arguments.set and not arguments.scenario:
         raise BadInput("needs a scenario to change: apa live SCENARIO --set ...", key="--set")
-    names = chosen(arguments.scenario)
-    scenarios = [scenario for name in names if (scenario := _fitting(name, arguments))] if names else shipped()
+    names = select_scenarios(arguments.scenario)
+    scenarios = [scenario for name in names if (scenario := _fitting(name, arguments))] if names else page_scenarios()
     if not scenarios:
         raise BadInput("nothing of this can be driven on a page", key=" ".join(arguments.scenario))
     try:

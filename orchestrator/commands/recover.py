@@ -5,7 +5,7 @@ from pathlib import Path
 
 from orchestrator.log.recover import recover
 from orchestrator.text.console import say
-from orchestrator.text.owned import owned_with
+from orchestrator.text.owned import lock_with
 
 EXAMPLES = """examples:
   apa recover runs/guo2015-case4/run.mcap.part
@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the mended log and print what is in it and what is lost. Returns 0."""
-    with owned_with(arguments.file, arguments.file):
+    with lock_with(arguments.file, arguments.file):
         found = recover(arguments.file)
     content = f"{found.messages} messages up to {found.last_ns / 1e9:.2f} s"
     if found.path == arguments.file:

@@ -8,8 +8,8 @@ from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.text.console import say, working
 from orchestrator.text.errors import PARKED, BadInput
-from orchestrator.text.owned import owned_with
-from orchestrator.verdict.logged import logged
+from orchestrator.text.owned import lock_with
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
@@ -69,9 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
         )
     log: Path = arguments.log[0]
     out: Path = arguments.out or log.parent / "report.html"
-    with owned_with(log, out):
+    with lock_with(log, out):
         recording = read_log(log)
-        scenario, note = logged(recording, str(log), log.stem)
+        scenario, note = read_logged_run(recording, str(log), log.stem)
         if note:
             say(note)
         write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
@@ -80,13 +80,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write_figure(arguments: argparse.Namespace) -> int:
-    from orchestrator.drawing.decimation import decimated
+    from orchestrator.drawing.decimation import decimate
     from orchestrator.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
 
     check_figure(arguments.figure)
     if not 10 <= arguments.dpi <= 2400:
         raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
-    runs = [(log.stem if log.stem != "run" else log.parent.name, decimated(read_log(log))) for log in arguments.log]
+    runs = [(log.stem if log.stem != "run" else log.parent.name, decimate(read_log(log))) for log in arguments.log]
     figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width or "17cm"), arguments.style)
     save_figure(figure, arguments.figure, arguments.dpi, arguments.style)
     print(arguments.figure)
@@ -106,7 +106,7 @@ def _write_video(arguments: argparse.Namespace) -> int:
         raise BadInput("a video is of one run; several runs are overlaid with --figure FILE", key="--video")
     log: Path = arguments.log[0]
     recording = read_log(log)
-    scenario, note = logged(recording, str(log), log.stem)
+    scenario, note = read_logged_run(recording, str(log), log.stem)
     if note:
         say(note)
     summary = summarize(recording, scenario, 0.0, note)

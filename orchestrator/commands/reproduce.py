@@ -11,7 +11,7 @@ from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.papers.papers import paper, papers
 from orchestrator.text.console import say
 from orchestrator.text.errors import NOT_PARKED, PARKED
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
     from orchestrator.papers.result import Drive, Driven
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         out: Path = arguments.out or Path("runs/reproduce") / name
         if arguments.out is not None and len(names) > 1:
             out = arguments.out / name
-        with owned(out):
+        with lock_folder(out):
             result = function(out, drive)
             text = json.dumps(result.as_json(), indent=2)
             write_whole(out / "result.json", text + "\n")

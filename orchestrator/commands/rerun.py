@@ -13,7 +13,7 @@ from orchestrator.session.options import add_output_arguments
 from orchestrator.session.trust import require_trust
 from orchestrator.text.console import console, say
 from orchestrator.text.errors import BAD_INPUT, BadInput
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import FmuUsed
 
 EXAMPLES = """examples:
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     first = read_log(log)
     if not first.info.get("scenario"):
         raise BadInput("has no scenario, so there is nothing to run again", file=log)
-    scenario = logged(first, str(log)).scenario
+    scenario = read_logged_run(first, str(log)).scenario
     used = [FmuUsed(**item) for item in first.info.get("fmus", [])]
     changed = [item.name for item in used if item.kind == FOREIGN and not _is_same_file(item, log)]
     files = {item.name: Path(item.path) for item in used if item.kind == FOREIGN}

@@ -12,9 +12,9 @@ from orchestrator.commands import STUDIES
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.drawing.save import check_picture
 from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, shown, suggestion_or_choices
+from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
 from orchestrator.text.failures import verdict_stands
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.figure is not None:
         check_picture(arguments.figure)
     own = [f"{key}={getattr(arguments, key)}" for key in ("runs", "seed") if getattr(arguments, key) is not None]
-    study = chosen_study(arguments.study, [*arguments.set, *own])
+    study = select_study(arguments.study, [*arguments.set, *own])
     study = study._replace(design=study.design.part(arguments.offset, arguments.stride))
     if not len(study.design.seeds):
         raise BadInput(f"{arguments.offset}: the study has fewer runs", key="--offset")
@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _explain(study)
     out: Path = arguments.out or Path("runs") / study.name
     names = ("fmus", "dask", "chunk", "resume", "restart")
-    with owned(out):
+    with lock_folder(out):
         swept = sweep(study, out, Options(workers=arguments.jobs, **{name: getattr(arguments, name) for name in names}))
         written = {} if swept.table is None else _write(swept.table, arguments)
         _tell(swept, written, arguments)
@@ -149,13 +149,13 @@ def _tell(swept: "Swept", written: dict[str, Path], arguments: argparse.Namespac
         _print(swept, written, arguments.study)
 
 
-def chosen_study(name: str, sets: list[str]) -> "Study":
+def select_study(name: str, sets: list[str]) -> "Study":
     """Return the study that a word on the command line means, changed by ``KEY=VALUE``. Raises ``BadInput``."""
     from orchestrator.sweep.study.read_study import read_study
 
     pairs = dict(text.split("=", 1) for text in sets if "=" in text)
     if len(pairs) != len(sets):
-        raise BadInput(f"{shown(sets)}: expected KEY=VALUE", file="--set")
+        raise BadInput(f"{format_value(sets)}: expected KEY=VALUE", file="--set")
     if name not in STUDIES:
         return read_study(name, pairs, STUDIES)
     made: Study = importlib.import_module(STUDIES[name]).study(**_whole(name, pairs))
@@ -170,7 +170,7 @@ def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
             hint = suggestion_or_choices(key, known)
             raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
         if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
-            raise BadInput(f"{shown(value)} is not a whole number of at least 0", file="--set", key=key)
+            raise BadInput(f"{format_value(value)} is not a whole number of at least 0", file="--set", key=key)
     return {key: int(value) for key, value in pairs.items()}
 
 

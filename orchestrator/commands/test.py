@@ -22,13 +22,13 @@ from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments
-from orchestrator.session.provenance import started_now
+from orchestrator.session.provenance import start_record
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
-from orchestrator.suite.suite import Bench, Tested, chosen, run_tests, tested_by
+from orchestrator.suite.suite import Bench, SuiteResult, provenance_of, run_tests, select_scenarios
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 from orchestrator.text.readable import shortly
 
 EXAMPLES = """examples:
@@ -84,13 +84,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Run all, print a line for each. Returns 0 if all passed, 1 if not, 130 if interrupted."""
     out: Path = arguments.out
     if any(is_catalogue(word) for word in arguments.scenarios):
-        with owned(out):
+        with lock_folder(out):
             return _catalogue(arguments)
-    names = chosen(arguments.scenarios)
-    with owned(out):
+    names = select_scenarios(arguments.scenarios)
+    with lock_folder(out):
         verdicts = Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names)
         if arguments.coverage or (arguments.min_transition_coverage, arguments.min_branch_coverage) != (None, None):
-            return _covered(arguments, names, verdicts)
+            return _test_with_coverage(arguments, names, verdicts)
         return _run(arguments, names, verdicts)
 
 
@@ -101,7 +101,7 @@ def jobs(text: str) -> int:
     return int(text) or os.cpu_count() or 1
 
 
-def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
+def _test_with_coverage(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
     """Test with the models in process, and say what of their charts and code was covered."""
     from orchestrator.coverage.coverage import looking_on
     from orchestrator.coverage.modes import Modes
@@ -111,7 +111,9 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
     modes = Modes()
     with looking_on([*MODELS.values(), *apart_models().values()]) as so_far:
         code = _run(arguments, names, verdicts, modes.look)
-        found = so_far().of_ours({MODELS[name].package.__name__ for name in modes.ours & set(MODELS)}, modes.covered())
+        found = so_far().of_ours(
+            {MODELS[name].package.__name__ for name in modes.ours & set(MODELS)}, modes.chart_coverages()
+        )
     if arguments.min_transition_coverage is not None and not found.has_list:
         advice = "list the transitions of the mode in the scenario, under system: modes:"
         raise BadInput(f"nothing says which transitions there are; {advice}", key="--min-transition-coverage")
@@ -163,7 +165,7 @@ def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts", 
             meter.at(len(tested))
             if not arguments.json:
                 _print(tested[-1], f"{len(tested)} of {len(names)}")
-        about = tested_by(tested, shlex.join(["apa", *arguments.words]))
+        about = provenance_of(tested, shlex.join(["apa", *arguments.words]))
         verdicts.finish(about)
     passed = sum(item.passed for item in tested)
     if arguments.json:
@@ -187,7 +189,7 @@ class Verdicts:
     """Between two times that JUnit is written [s]."""
 
     def __init__(self, junit: Path, index: Path, names: list[str]) -> None:
-        self.tested: list[Tested] = []
+        self.tested: list[SuiteResult] = []
         self._junit, self._index, self._names = junit, index, names
         self._next = 0.0
         self.write()
@@ -211,10 +213,10 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
     files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
     found = [find_file(name, "requirements", "set of requirements", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
-    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=started_now())
+    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=start_record())
 
 
-def _print(tested: Tested, place: str) -> None:
+def _print(tested: SuiteResult, place: str) -> None:
     out = console()
     verdict = "[green]pass[/]" if tested.passed else "[red]FAIL[/]"
     verdict = "[yellow]not run[/]" if tested.could_not_run else verdict
@@ -228,7 +230,7 @@ def _print(tested: Tested, place: str) -> None:
         out.print(f"        left out: {shortly(tested.ignored)}", markup=False, soft_wrap=True)
 
 
-def _row(tested: Tested) -> dict[str, Any]:
+def _row(tested: SuiteResult) -> dict[str, Any]:
     return {
         "scenario": tested.scenario.name,
         "passed": tested.passed,

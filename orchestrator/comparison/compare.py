@@ -108,7 +108,7 @@ def _signal(name: str, a: Recording, b: Recording, tolerances: Tolerances) -> Di
     names = states_named(a.states(name))
     for pair in traces(name, a, b, held, tolerance.time, turns):
         worst.add(distance(pair.a, pair.b, tolerance, pair.span), pair, names)
-    return _judged(name, unit, tolerance, worst)
+    return _difference(name, unit, tolerance, worst)
 
 
 def states_named(states: dict[int, str]) -> Callable[[TracePair, float], str]:
@@ -148,7 +148,7 @@ class _LargestDistances:
             self.words = words(pair, self.first)
 
 
-def _judged(name: str, unit: str, tolerance: Tolerance, worst: _LargestDistances) -> Difference:
+def _difference(name: str, unit: str, tolerance: Tolerance, worst: _LargestDistances) -> Difference:
     deciding = worst.apart if worst.first is None else worst.outside
     if deciding is None:
         return _row(name, unit, tolerance, note="no common time")

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
+from orchestrator.text.errors import BadInput, format_value, suggestion_or_choices
 from orchestrator.text.patterns import fits
 from orchestrator.text.quantities import number
 from orchestrator.text.yaml_file import read_mapping
@@ -40,7 +40,7 @@ class Tolerances:
             bounds[FIELDS[key]] = _bound(given[key], UNITS.get(key, unit), file, f"{pattern}: {key}")
         return self._default._replace(**bounds)
 
-    def unused(self, signals: Iterable[str]) -> list[str]:
+    def patterns_without_match(self, signals: Iterable[str]) -> list[str]:
         """Return the patterns that fit none of ``signals``: a misspelt one would change nothing."""
         names = list(signals)
         return [pattern for pattern, _, _ in self._rows if not any(fits(name, pattern) for name in names)]
@@ -54,7 +54,7 @@ def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
     rows = []
     for pattern, given in (read_mapping(path) if path else {}).items():
         if not isinstance(given, dict):
-            raise BadInput(f"{shown(given)}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
+            raise BadInput(f"{format_value(given)}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
         for key in given:
             if key not in KEYS:
                 hint = suggestion_or_choices(str(key), KEYS)
@@ -66,5 +66,5 @@ def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
 def _bound(value: object, unit: str, file: str, key: str) -> float:
     bound = number(value, unit, file=file, key=key, any_value=True)
     if not bound >= 0.0:
-        raise BadInput(f"{shown(value)} is not 0 or more", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is not 0 or more", file=file, key=key)
     return bound

@@ -36,7 +36,7 @@ def traces(
         first, second = (_part(run, span, tolerance) for run in (a, b))
         one, two = first[1].signals[name], second[1].signals[name]
         if angles is not None and not (np.isnan(one).any() or np.isnan(two).any()):
-            one, two = angles[0].unwrapped(one, first[0]), angles[1].unwrapped(two, second[0])
+            one, two = angles[0].unwrap(one, first[0]), angles[1].unwrap(two, second[0])
             turn = 2.0 * math.pi * round((one[0] - two[0]) / (2.0 * math.pi)) if turn is None else turn
             two = two + turn
         yield TracePair(Trace(first[1].t, one, held), Trace(second[1].t, two, held), span)
@@ -70,7 +70,7 @@ class _Angles:
         self._row = 0
         self._known: Array = np.empty(0)
 
-    def unwrapped(self, values: Array, row: int) -> Array:
+    def unwrap(self, values: Array, row: int) -> Array:
         """Return a part, which begins at ``row``, without jumps."""
         smooth: Array = np.unwrap(values)
         at = row - self._row

@@ -99,7 +99,7 @@ class CompiledMaster(Master):
                 self.values[:] = rows[row - unseen]
                 t_ns = min((first + row) * self.step_ns, self.stop_ns)
                 for observer in self.observers:
-                    observer.exchanged(t_ns)
+                    observer.on_communication_point(t_ns)
                 reason = self._over(t_ns, first + row == plan.last)
                 if reason:
                     return End(reason, t_ns)

@@ -27,12 +27,12 @@ def connect(slaves: list[Slave]) -> list[Connection]:
     Raises ``BadInput`` if a pair differs in type or unit, or if two slaves offer the same input.
     """
     try:
-        return wired(connections([part_of_slave(slave) for slave in slaves]))
+        return bundle_wires(connections([part_of_slave(slave) for slave in slaves]))
     except CannotConnectError as error:
         raise BadInput(error.text, key=error.signal) from None
 
 
-def wired(wires: list[Wire]) -> list[Connection]:
+def bundle_wires(wires: list[Wire]) -> list[Connection]:
     """Return one connection for each pair of slaves."""
     pairs: dict[tuple[int, int], list[Wire]] = {}
     for wire in wires:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.errors import BadInput, format_value
 from orchestrator.text.printable import is_printable, printable
 
 MAX_ELEMENTS = 200_000
@@ -29,20 +29,20 @@ def check_declared(description: Any, path: Path) -> None:
     if description.coSimulation is not None:
         identifier = str(description.coSimulation.modelIdentifier)
         if not IDENTIFIER.fullmatch(identifier):
-            raise BadInput(f"{shown(identifier)} is no identifier of C", file=path, key="modelIdentifier")
+            raise BadInput(f"{format_value(identifier)} is no identifier of C", file=path, key="modelIdentifier")
     _check_text(description.guid, "guid", path)
     elements = 0
     for item in description.modelVariables:
         key = _check_text(item.name, "name of a variable", path)
         if item.name.count(".") + item.name.count("[") > MAX_DEPTH:
-            raise BadInput(f"a name of more than {MAX_DEPTH} parts", file=path, key=shown(key))
-        _check_text(item.unit, f"{shown(key)}: unit", path)
+            raise BadInput(f"a name of more than {MAX_DEPTH} parts", file=path, key=format_value(key))
+        _check_text(item.unit, f"{format_value(key)}: unit", path)
         item.description = printable(str(item.description or ""))[:MAX_DESCRIPTION]
-        reference = _whole(item.valueReference, path, f"{shown(key)}: valueReference")
+        reference = _whole(item.valueReference, path, f"{format_value(key)}: valueReference")
         if not 0 <= reference < 1 << 32:
-            raise BadInput(f"{reference} is no value reference", file=path, key=shown(key))
+            raise BadInput(f"{reference} is no value reference", file=path, key=format_value(key))
         if item.causality in CONNECTED:
-            elements += _size(item, path, shown(key))
+            elements += _size(item, path, format_value(key))
             if elements > MAX_ELEMENTS:
                 raise BadInput(
                     f"has more than {MAX_ELEMENTS} inputs, outputs, locals and parameters, elements of arrays counted",
@@ -61,7 +61,7 @@ def _check_text(text: object, what: str, path: Path) -> str:
     if len(written) > MAX_LETTERS:
         raise BadInput(f"{what} has {len(written)} letters, at most {MAX_LETTERS}", file=path)
     if not is_printable(written):
-        raise BadInput(f"{what} has control characters: {shown(written)}", file=path)
+        raise BadInput(f"{what} has control characters: {format_value(written)}", file=path)
     return written
 
 
@@ -69,7 +69,7 @@ def _whole(value: object, path: Path, key: str) -> int:
     try:
         return int(str(value))
     except ValueError:
-        raise BadInput(f"{shown(value)} is no whole number", file=path, key=key) from None
+        raise BadInput(f"{format_value(value)} is no whole number", file=path, key=key) from None
 
 
 def _size(item: Any, path: Path, key: str) -> int:
@@ -93,9 +93,9 @@ def _check_items(kind: Any, path: Path) -> None:
         if number >= MAX_ITEMS:
             raise BadInput(f"has more than {MAX_ITEMS} items", file=path, key=name)
         _check_text(item.name, f"{name}: an item", path)
-        value = _whole(item.value if item.value is not None else 0, path, f"{name}: {shown(item.name)}")
+        value = _whole(item.value if item.value is not None else 0, path, f"{name}: {format_value(item.name)}")
         if not -(1 << 31) <= value < 1 << 31:
-            raise BadInput(f"{value} is no 32-bit integer", file=path, key=f"{name}: {shown(item.name)}")
+            raise BadInput(f"{value} is no 32-bit integer", file=path, key=f"{name}: {format_value(item.name)}")
 
 
 def _check_unit(unit: Any, path: Path) -> None:

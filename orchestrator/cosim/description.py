@@ -15,7 +15,7 @@ from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.declared import check_declared
 from orchestrator.cosim.slave import Ports, Scale
-from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.errors import BadInput, format_value
 from orchestrator.text.quantities import MOST_WHOLE
 
 WHOLE = ("Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64")
@@ -51,7 +51,7 @@ def read_description(path: Path) -> ModelDescription:
     names = Counter(item.name for item in description.modelVariables)
     twice = next((name for name, count in names.items() if count > 1), None)
     if twice is not None:
-        raise BadInput(f"is not an FMU: it has {names[twice]} variables called {shown(twice)}", file=path)
+        raise BadInput(f"is not an FMU: it has {names[twice]} variables called {format_value(twice)}", file=path)
     version = str(description.fmiVersion)
     if not version.startswith(("2.", "3.")):
         raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0", file=path)
@@ -97,7 +97,7 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
         name for item in chosen if KINDS[item.type] is float and _unit(item) is None for name in element_names(item)
     )
     ports = Ports(found, unsaid, _scales(description))
-    ports.unsupported = unsupported(description, causality)
+    ports.unsupported = variables_of_other_types(description, causality)
     if causality == "output":
         ports.direct = dependencies(description)
     return ports
@@ -125,7 +125,7 @@ def _texts(scalar: ModelVariable) -> list[object]:
     return [*given, *[None] * len(names)][: len(names)]
 
 
-def unsupported(description: ModelDescription, *causalities: str) -> list[str]:
+def variables_of_other_types(description: ModelDescription, *causalities: str) -> list[str]:
     """Return the variables of types that are not supported here: ``name (Binary)``, ``name (Clock)``."""
     return [
         f"{item.name} ({item.type})"
@@ -189,9 +189,9 @@ def _variable(scalar: ModelVariable, name: str, written: object, known: Variable
     try:
         start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
     except (ValueError, OverflowError):
-        raise BadInput(f"{shown(text)} is no start value of type {scalar.type}", file=path, key=name) from None
+        raise BadInput(f"{format_value(text)} is no start value of type {scalar.type}", file=path, key=name) from None
     if kind is int and not -MOST_WHOLE <= start < MOST_WHOLE:
-        raise BadInput(f"start value {shown(text)} is beyond 32-bit integers", file=path, key=name)
+        raise BadInput(f"start value {format_value(text)} is beyond 32-bit integers", file=path, key=name)
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
     states = _states(scalar, known if known is not None and known.kind is kind else None)
     roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())

@@ -17,7 +17,7 @@ class Standstill:
         self._wait_ns = condition.standstill_ns
         self._since: int | None = None
 
-    def reached(self, t_ns: int) -> str:
+    def stop_reason(self, t_ns: int) -> str:
         """Return ``standstill`` once the car has stood long enough in a final state."""
         if self._mode[self._mode_place] not in self._final or abs(self._speed[self._speed_place]) > self._still:
             self._since = None

@@ -88,7 +88,7 @@ def build_into(
     from fmus.build import MODELS as PAIR
     from fmus.build import build_all
 
-    wanted = wanted_platforms(platforms)
+    wanted = select_platforms(platforms)
     with working(f"building {kind} FMUs"):
         try:
             return build_all(folder, (kind,), None, wanted, cc, PAIR if models is None else models)
@@ -96,7 +96,7 @@ def build_into(
             raise BadInput(str(error)) from error
 
 
-def wanted_platforms(asked: Iterable[str]) -> list[str] | None:
+def select_platforms(asked: Iterable[str]) -> list[str] | None:
     """Return the platforms that ``--platform`` asks for, None for this machine's."""
     from fmus.native.platforms import PLATFORMS
 

@@ -115,7 +115,7 @@ class FmuSlave:
             self._instance = None
             if isinstance(error, RESOURCES):
                 raise
-            refusal = str(self._refused("cannot be instantiated", FATAL, str(error)))
+            refusal = str(self._status_error("cannot be instantiated", FATAL, str(error)))
             raise NotRunError(instantiation_message(refusal)) from error
         self._bind()
         self._set_parameters()
@@ -123,7 +123,7 @@ class FmuSlave:
             self._instance.setupExperiment(startTime=0.0, stopTime=stop_ns / 1e9)
             self._instance.enterInitializationMode()
         except Exception as error:
-            raise self._refused("refuses to initialize", _status_of(error), str(error)) from error
+            raise self._status_error("refuses to initialize", _status_of(error), str(error)) from error
 
     def start(self) -> None:
         """Exit Initialization Mode."""
@@ -131,7 +131,7 @@ class FmuSlave:
         try:
             self._instance.exitInitializationMode()
         except Exception as error:
-            raise self._refused("refuses to start", _status_of(error), str(error)) from error
+            raise self._status_error("refuses to start", _status_of(error), str(error)) from error
 
     def fetch_outputs(self) -> None:
         """One get call per type that has outputs."""
@@ -164,15 +164,15 @@ class FmuSlave:
 
     def no_outputs(self, status: int) -> RunError:
         """Return the error of a get call that failed with an FMI status."""
-        return self._refused("gives no outputs", status)
+        return self._status_error("gives no outputs", status)
 
     def no_inputs(self, status: int) -> RunError:
         """Return the error of a set call that failed with an FMI status."""
-        return self._refused("refuses its inputs", status)
+        return self._status_error("refuses its inputs", status)
 
     def no_step(self, t_ns: int, status: int) -> RunError:
         """Return the error of a step that failed with an FMI status."""
-        return self._refused(f"failed at {t_ns / 1e9:g} s", status)
+        return self._status_error(f"failed at {t_ns / 1e9:g} s", status)
 
     def close(self) -> None:
         """Terminate, free the instance, remove the extracted files.
@@ -185,7 +185,7 @@ class FmuSlave:
                 try:
                     instance.terminate()
                 except Exception as error:
-                    self._refused("terminate", _status_of(error))
+                    self._status_error("terminate", _status_of(error))
                     self._log(self.name, WARNING, f"terminate: {error}")
             if self._worst < FATAL:
                 instance.freeInstance()
@@ -193,7 +193,7 @@ class FmuSlave:
             remove_folder(Path(self._directory))
             self._directory = ""
 
-    def _refused(self, what: str, status: int, text: str = "no message") -> RunError:
+    def _status_error(self, what: str, status: int, text: str = "no message") -> RunError:
         """Note the status, which decides what may still be called, and return the error that says so."""
         self._worst = max(self._worst, status)
         return RunError(f"{self.name} {what}: {self._last_message or text}")
@@ -247,7 +247,7 @@ class FmuSlave:
         try:
             setters[kind]([self._references[name] for name in values], list(values.values()))
         except Exception as error:
-            raise self._refused("refuses its parameters", _status_of(error), str(error)) from error
+            raise self._status_error("refuses its parameters", _status_of(error), str(error)) from error
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
         def logger(_environment: Any, _instance: Any, status: int, category: Any, message: Any) -> None:

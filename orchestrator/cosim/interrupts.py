@@ -3,7 +3,7 @@
 from contextlib import AbstractContextManager
 
 from orchestrator.cosim.master import Interrupt
-from orchestrator.text.ends import asked_to_end
+from orchestrator.text.ends import stop_on_signal
 
 
 def on_interrupt(interrupt: Interrupt) -> AbstractContextManager[None]:
@@ -12,4 +12,4 @@ def on_interrupt(interrupt: Interrupt) -> AbstractContextManager[None]:
     def request() -> None:
         interrupt.requested = True
 
-    return asked_to_end(request)
+    return stop_on_signal(request)

@@ -16,10 +16,10 @@ from orchestrator.cosim.slave import Array, Indices, Slave, all_values
 class Observer(Protocol):
     """Sees every exchange, changes nothing: log, recording, progress bar."""
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Look at the slaves' arrays as they are at ``t_ns``."""
 
-    def closed(self, end: "End") -> None:
+    def on_terminate(self, end: "End") -> None:
         """The run is over; called once, whatever the reason."""
 
 
@@ -36,7 +36,7 @@ class Manipulator(Protocol):
 class Ending(Protocol):
     """Says when the run is over before its stop time."""
 
-    def reached(self, t_ns: int) -> str:
+    def stop_reason(self, t_ns: int) -> str:
         """Return the reason to end now, or an empty string."""
 
 
@@ -131,7 +131,7 @@ class Master:
             for fault in faults:
                 fault.apply(t_ns)
             for observer in self.observers:
-                observer.exchanged(t_ns)
+                observer.on_communication_point(t_ns)
             reason = self._over(t_ns, count == last)
             if reason:
                 return End(reason, t_ns)
@@ -144,7 +144,7 @@ class Master:
     def finish(self, end: End) -> None:
         """Tell the observers."""
         for observer in self.observers:
-            observer.closed(end)
+            observer.on_terminate(end)
 
     def free(self) -> None:
         """Free the slaves."""
@@ -155,7 +155,7 @@ class Master:
         if self.interrupt.requested:
             return "interrupted"
         for ending in self.endings:
-            reason = ending.reached(t_ns)
+            reason = ending.stop_reason(t_ns)
             if reason:
                 return reason
         return "stop_time" if last else ""

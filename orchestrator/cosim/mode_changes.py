@@ -39,7 +39,7 @@ class ModeChanges:
         ]
         self._edges = sorted(edges)
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Say what has changed since the last exchange."""
         while self._edges and self._edges[0][0] <= t_ns:
             self._say(t_ns, WARNING, "fault", self._edges.pop(0)[1])
@@ -48,7 +48,7 @@ class ModeChanges:
             self._tell(t_ns, np.frombuffer(self._before), np.frombuffer(now))
             self._before = now
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Say why the run ended."""
         level = ERROR if end.reason.startswith("error") else INFO
         self._say(end.t_ns, level, "run", f"ended: {end.reason}")

@@ -201,11 +201,11 @@ class Recorder:
         self._variables = dict(zip(names, (item for _, item in seen), strict=True))
         self._blocks = SignalBlocks(names, exchanges)
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Copy all inputs and outputs."""
         self._blocks.append(t_ns, self._values)
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""
 
     @property

@@ -137,7 +137,7 @@ class SignalBlocks:
         end = self.count if end is None else end
         place = self.places[name]
         values = np.empty(max(0, end - first))
-        for block, begin, stop in self._touched(first, end):
+        for block, begin, stop in self._blocks_between(first, end):
             values[block.first_row + begin - first : block.first_row + stop - first] = self._read(
                 block, place, begin, stop
             )
@@ -147,7 +147,7 @@ class SignalBlocks:
         """Return stored times [ns], from row ``first`` up to ``end``."""
         end = self.count if end is None else end
         times = np.empty(max(0, end - first), dtype=np.int64)
-        for block, begin, stop in self._touched(first, end):
+        for block, begin, stop in self._blocks_between(first, end):
             at = block.first_row - first
             times[at + begin : at + stop] = self._values(block.at, "int64", begin, stop)
         return times
@@ -160,7 +160,7 @@ class SignalBlocks:
                 return block.first_row + int(np.searchsorted(times, t_ns, side=side))  # type: ignore[call-overload]
         return self.count
 
-    def _touched(self, first: int, end: int) -> Iterator[tuple[_Block, int, int]]:
+    def _blocks_between(self, first: int, end: int) -> Iterator[tuple[_Block, int, int]]:
         for block in self._blocks:
             begin, stop = max(first - block.first_row, 0), min(end - block.first_row, block.rows)
             if begin < stop:

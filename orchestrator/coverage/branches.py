@@ -53,12 +53,12 @@ class Branches:
         self._counts += [0, 0]
         return len(self._places) - 1
 
-    def seen(self, number: int, value: Any) -> Any:
+    def count_outcome(self, number: int, value: Any) -> Any:
         """Count an outcome and hand it on."""
         self._counts[2 * number + bool(value)] += 1
         return value
 
-    def found(self) -> list[Branch]:
+    def list_branches(self) -> list[Branch]:
         """Return all branches with their counts, by file and line; of folders that did not run, none."""
         counts = self._counts
         every = [Branch(*place, counts[2 * n + 1], counts[2 * n]) for n, place in enumerate(self._places)]
@@ -75,7 +75,7 @@ def watching(packages: Iterable[ModuleType]) -> Iterator[Branches]:
     try:
         for module in modules:
             codes = _counting(module, branches)
-            vars(module)[SEEN] = branches.seen
+            vars(module)[SEEN] = branches.count_outcome
             for function in _functions(module):
                 changed.append((function, function.__code__))
                 function.__code__ = codes[function.__qualname__]
@@ -143,11 +143,11 @@ class _Counting(ast.NodeTransformer):
         return self._decision(node)
 
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.AST:
-        node.values = [self._counted(value) for value in node.values]
+        node.values = [self._count(value) for value in node.values]
         return node
 
     def visit_comprehension(self, node: ast.comprehension) -> ast.AST:
-        node.ifs = [self._counted(value) for value in node.ifs]
+        node.ifs = [self._count(value) for value in node.ifs]
         self.generic_visit(node)
         return node
 
@@ -157,7 +157,7 @@ class _Counting(ast.NodeTransformer):
         node.test = self._call(node.test, text)
         return node
 
-    def _counted(self, node: ast.expr) -> ast.expr:
+    def _count(self, node: ast.expr) -> ast.expr:
         text = ast.unparse(node)
         return self._call(self.visit(node), text)
 

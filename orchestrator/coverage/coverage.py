@@ -6,17 +6,17 @@ from typing import NamedTuple
 
 from modelkit.model import Model
 from orchestrator.coverage.branches import Branch, branch_share, watching
-from orchestrator.coverage.covered import ChartCovered, covered, share
+from orchestrator.coverage.covered import ChartCoverage, chart_coverage, share
 from orchestrator.coverage.tracer import name_of, tracing
 
 
 class Coverage(NamedTuple):
     """How far tests went."""
 
-    charts: list[ChartCovered]
+    charts: list[ChartCoverage]
     branches: list[Branch]
 
-    def of_ours(self, packages: Collection[str], modes: list[ChartCovered]) -> "Coverage":
+    def of_ours(self, packages: Collection[str], modes: list[ChartCoverage]) -> "Coverage":
         """Return it without the charts of models that were nowhere in the tests, and with modes of others."""
         ours = [chart for chart in self.charts if chart.name.split(".")[0] in packages]
         return self._replace(charts=[*ours, *modes])
@@ -44,4 +44,6 @@ def looking_on(models: Iterable[Model]) -> Iterator[Callable[[], Coverage]]:
     charts = [chart for model in known for chart in model.all_charts()]
     packages = [package for model in known for package in model.sources()]
     with watching(packages) as branches, tracing(charts) as seen:
-        yield lambda: Coverage([covered(chart, seen[name_of(chart)]) for chart in charts], branches.found())
+        yield lambda: Coverage(
+            [chart_coverage(chart, seen[name_of(chart)]) for chart in charts], branches.list_branches()
+        )

@@ -17,7 +17,7 @@ class RowCovered(NamedTuple):
     source: str
     guard: str
     target: str
-    taken: int
+    count_taken: int
     """Samples at which it was taken: its guard true while it decides."""
     refused: int
     """Samples at which it could have been: its guard false while it decides."""
@@ -29,7 +29,7 @@ class RowCovered(NamedTuple):
         return f"{self.source} to {self.target}{when}".lower().replace("_", " ")
 
 
-class ChartCovered(NamedTuple):
+class ChartCoverage(NamedTuple):
     """One chart and how far the tests have been through it."""
 
     name: str
@@ -46,25 +46,25 @@ class ChartCovered(NamedTuple):
     """Transitions seen that are not listed."""
 
     @property
-    def visited(self) -> int:
+    def count_visited(self) -> int:
         """States that were visited."""
         return sum(count > 0 for count in self.states.values())
 
     @property
-    def taken(self) -> int:
+    def count_taken(self) -> int:
         """Transitions that were taken."""
-        return sum(row.taken > 0 for row in self.rows)
+        return sum(row.count_taken > 0 for row in self.rows)
 
     @property
     def outcomes(self) -> int:
         """Of the two outcomes of each guard while it decides, those seen."""
-        return self.taken + sum(row.refused > 0 for row in self.rows)
+        return self.count_taken + sum(row.refused > 0 for row in self.rows)
 
 
 ANY = "any state"
 
 
-def covered(chart: Chart, seen: Seen) -> ChartCovered:
+def chart_coverage(chart: Chart, seen: Seen) -> ChartCoverage:
     """Return what of a chart is covered by what it has decided on."""
     ends = _ends(chart)
     taken, refused = [0] * len(chart.rows), [0] * len(chart.rows)
@@ -82,7 +82,7 @@ def covered(chart: Chart, seen: Seen) -> ChartCovered:
     names = [(_name(chart, row[0]), chart.guards(row[1]).name, _name(chart, row[2])) for row in chart.rows]
     rows = [RowCovered(*row, yes, no) for row, yes, no in zip(names, taken, refused, strict=True)]
     counts = {state.name: count for state, count in states.items()}
-    return ChartCovered(name_of(chart), chart.signal, counts, rows)
+    return ChartCoverage(name_of(chart), chart.signal, counts, rows)
 
 
 def _ends(chart: Chart) -> set[int]:
@@ -94,8 +94,8 @@ def _name(chart: Chart, value: int) -> str:
     return chart.states(value).name if value >= 0 else ANY
 
 
-def share(charts: list[ChartCovered]) -> float:
+def share(charts: list[ChartCoverage]) -> float:
     """Return the share of the transitions that were taken, of all charts that list theirs together; 1 without any."""
     listed = [chart for chart in charts if chart.is_listed]
     count = sum(len(chart.rows) for chart in listed)
-    return sum(chart.taken for chart in listed) / count if count else 1.0
+    return sum(chart.count_taken for chart in listed) / count if count else 1.0

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
-from orchestrator.coverage.covered import ChartCovered, RowCovered
+from orchestrator.coverage.covered import ChartCoverage, RowCovered
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.modes import ANY, ModeList, word
 from orchestrator.scenario.wiring.system_text import Feed, terms
@@ -38,9 +38,9 @@ class Modes:
             file = files[slave].name if slave in files else slave
             self._found.setdefault((file, name), _ModeSeen()).add(listed, recording, signal)
 
-    def covered(self) -> list[ChartCovered]:
+    def chart_coverages(self) -> list[ChartCoverage]:
         """Return each mode as a chart whose guards nobody knows."""
-        return [mode.covered(*names) for names, mode in sorted(self._found.items())]
+        return [mode.chart_coverages(*names) for names, mode in sorted(self._found.items())]
 
 
 def modes_of(scenario: Scenario, files: Files, recording: Recording) -> dict[str, ModeList]:
@@ -93,7 +93,7 @@ class _ModeSeen:
         rows = np.flatnonzero(np.diff(values))
         self._seen.changes.update(zip(values[rows].tolist(), values[rows + 1].tolist(), strict=True))
 
-    def covered(self, file: str, signal: str) -> ChartCovered:
+    def chart_coverages(self, file: str, signal: str) -> ChartCoverage:
         """Return what was seen; the transitions that nobody listed are ``beside``, or all if none is listed."""
         states = dict.fromkeys((self._listed or self._told).values(), 0)
         for value, count in sorted(self._seen.values.items()):
@@ -109,7 +109,7 @@ class _ModeSeen:
                 taken[pair] += count
         listed = [RowCovered(source, "", target, taken[source, target], 0) for source, target in self._pairs]
         rows, beside = (listed, beside) if listed else (beside, [])
-        return ChartCovered(file, signal, states, rows, False, bool(listed), beside)
+        return ChartCoverage(file, signal, states, rows, False, bool(listed), beside)
 
     def _name(self, value: float) -> str:
         """Return what a state is called where its transitions are listed, else by its FMU or its role."""

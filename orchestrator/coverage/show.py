@@ -10,7 +10,7 @@ from rich.table import Table
 from fmus.files import write_whole
 from orchestrator.coverage.branches import Branch, branch_share
 from orchestrator.coverage.coverage import Coverage
-from orchestrator.coverage.covered import ChartCovered, RowCovered, share
+from orchestrator.coverage.covered import ChartCoverage, RowCovered, share
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.report.page import still_page
 
@@ -33,13 +33,15 @@ def coverage_tables(found: Coverage) -> list[Table]:
     charts = _table("chart", "states", "transitions", "guard outcomes")
     for chart in found.charts:
         counts = (
-            f"{chart.visited} of {len(chart.states)}",
-            f"{chart.taken} of {len(chart.rows)}" if chart.is_listed else f"{chart.taken} seen, none listed",
+            f"{chart.count_visited} of {len(chart.states)}",
+            f"{chart.count_taken} of {len(chart.rows)}"
+            if chart.is_listed
+            else f"{chart.count_taken} seen, none listed",
             f"{chart.outcomes} of {2 * len(chart.rows)}" if chart.has_guards else "not known",
         )
         charts.add_row(f"{chart.name} ({chart.signal})" if chart.signal else chart.name, *counts)
         for row in chart.beside:
-            charts.add_row(f"  not listed: {row.words}", "", str(row.taken), "")
+            charts.add_row(f"  not listed: {row.words}", "", str(row.count_taken), "")
     folders = _table("model code", "branches", "outcomes")
     for folder, branches in _by_folder(found.branches).items():
         seen = sum(branch.outcomes for branch in branches)
@@ -117,14 +119,18 @@ def _missing(branch: Branch) -> str:
     )
 
 
-def _chart(chart: ChartCovered) -> str:
+def _chart(chart: ChartCoverage) -> str:
     arcs = [(row.source, row.target, row.guard.lower().replace("_", " ")) for row in chart.rows]
     arcs += [(row.source, row.target, "not listed") for row in chart.beside]
-    missed = {(row.source, row.target) for row in chart.rows if not row.taken}
+    missed = {(row.source, row.target) for row in chart.rows if not row.count_taken}
     unvisited = {name for name, count in chart.states.items() if not count}
     svg = chart_svg(arcs, list(chart.states), missed, unvisited)
-    transitions = f"{chart.taken} of {len(chart.rows)} transitions" if chart.is_listed else f"{chart.taken} transitions"
-    counts = f"{chart.visited} of {len(chart.states)} states, {transitions}"
+    transitions = (
+        f"{chart.count_taken} of {len(chart.rows)} transitions"
+        if chart.is_listed
+        else f"{chart.count_taken} transitions"
+    )
+    counts = f"{chart.count_visited} of {len(chart.states)} states, {transitions}"
     rows = "".join(_row(row, chart.has_guards) for row in chart.rows)
     rows += "".join(_row(row, False, "not listed") for row in chart.beside)
     against = "<th>decided against</th>" if chart.has_guards else ""
@@ -137,6 +143,6 @@ def _chart(chart: ChartCovered) -> str:
 
 
 def _row(row: RowCovered, has_guard: bool, note: str = "") -> str:
-    kind = "missed" if not row.taken else "half" if note or (has_guard and not row.refused) else ""
+    kind = "missed" if not row.count_taken else "half" if note or (has_guard and not row.refused) else ""
     refused = f"<td>{row.refused}</td>" if has_guard else f"<td>{note}</td>"
-    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.taken}</td>{refused}</tr>'
+    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.count_taken}</td>{refused}</tr>'

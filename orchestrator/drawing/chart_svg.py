@@ -110,7 +110,7 @@ def _labels(layout: _Layout) -> dict[Pair, _Label]:
     for pair in sorted(layout.merged, key=lambda item: layout.lanes.get(item, -1)):
         side, guards = _side(pair, layout.place), layout.merged[pair]
         tried = [
-            (_covered(_box(label, guards, side), taken), number, label)
+            (_overlap(_box(label, guards, side), taken), number, label)
             for number, label in enumerate(_spots(pair, layout))
         ]
         _, _, label = min(tried)
@@ -119,7 +119,7 @@ def _labels(layout: _Layout) -> dict[Pair, _Label]:
     return found
 
 
-def _covered(box: _Box, taken: list[_Box]) -> float:
+def _overlap(box: _Box, taken: list[_Box]) -> float:
     return sum(box.overlap(other) for other in taken)
 
 

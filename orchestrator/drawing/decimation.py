@@ -13,7 +13,7 @@ MAX_STEP_ROWS = 10_000
 """Instants kept for signals that change in steps: each of their changes; a signal beyond that counts as a curve."""
 
 
-def decimated(recording: Recording, keep: Iterable[float] = ()) -> Recording:
+def decimate(recording: Recording, keep: Iterable[float] = ()) -> Recording:
     """Return the recording itself if it is in memory; of a long one, instants that look the same.
 
     The run is divided into equal spans. Of each, the instants of the smallest and the largest value of every curve are

@@ -31,7 +31,7 @@ from orchestrator.drawing.time_panels import (
     draw_panel,
     panel_places,
     picture_height,
-    raised,
+    raise_place,
 )
 from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, place
 
@@ -89,13 +89,13 @@ def overview(seen: Overview, panels: tuple[Panel, ...] = PANELS) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(BASE_WIDTH, picture_height(len(columns))), dpi=FIGURE_DPI)
         letters = string.ascii_lowercase
-        _plan(figure.add_axes(raised(PLAN, len(columns))), letters[len(columns)], seen)
+        _plan(figure.add_axes(raise_place(PLAN, len(columns))), letters[len(columns)], seen)
         pieces = _pieces(seen)
         for letter, place_of_panel, column in zip(letters, panel_places(columns), columns, strict=False):
             axis = figure.add_axes(place_of_panel)
             draw_panel(axis, letter, column, seen)
             _over_time(axis, seen, pieces)
-        _legend(figure, {piece.name: piece.colour for piece in pieces}, raised(LEGEND, len(columns)))
+        _legend(figure, {piece.name: piece.colour for piece in pieces}, raise_place(LEGEND, len(columns)))
         _title(figure, seen.title)
     return figure
 

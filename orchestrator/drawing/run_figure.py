@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.panels import DEGREE, PANELS, Panel, PanelCurve
 from orchestrator.drawing.save import check_picture, save
-from orchestrator.drawing.seen import fixed_points, planned_paths
+from orchestrator.drawing.seen import path_plans, path_points
 from orchestrator.text.errors import BadInput, suggestion
 
 STYLES = ("screen", "paper")
@@ -54,7 +54,7 @@ def run_figure(
         _check_panel(panel, runs[0][1])
     columns = 2 if len(panels) > 1 and width > 10.0 else 1
     rows = -(-len(panels) // columns)
-    with styled(style):
+    with style_context(style):
         figure = Figure(
             figsize=(width / CM_PER_INCH, rows * 0.62 * width / columns / CM_PER_INCH), layout="constrained"
         )
@@ -71,12 +71,12 @@ def run_figure(
 
 def save_figure(figure: Figure, path: Path, dpi: int, style: str = "paper") -> None:
     """Write the figure as PNG, SVG or PDF by its name, fonts embedded."""
-    with styled(style):
+    with style_context(style):
         save(figure, path, dpi=dpi)
 
 
 @contextmanager
-def styled(style: str = "paper") -> Iterator[None]:
+def style_context(style: str = "paper") -> Iterator[None]:
     """Set matplotlib to the style within."""
     if style not in STYLES:
         raise BadInput(f"--style {style}: expected one of: {', '.join(STYLES)}")
@@ -151,7 +151,7 @@ def _draw_path(axis: Any, recording: Recording, label: str, how: dict[str, Any],
         _draw_boxes(axis, recording)
     signals = recording.signals
     axis.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], label=label, **how)
-    for number, planned in enumerate(planned_paths(recording)):
+    for number, planned in enumerate(path_plans(recording)):
         name = "planned" if scene and number == 0 else None
         axis.plot(*planned.T, color="#ffffff", linewidth=0.5)
         axis.plot(*planned.T, color="#b0401a", linestyle=":", linewidth=1.0, label=name)
@@ -160,7 +160,7 @@ def _draw_path(axis: Any, recording: Recording, label: str, how: dict[str, Any],
 
 
 def _draw_key_points(axis: Any, recording: Recording) -> None:
-    for name, (x, y) in fixed_points(recording).items():
+    for name, (x, y) in path_points(recording).items():
         axis.plot([x], [y], "o", color="#000000", markersize=2.5)
         axis.annotate(name, (x, y), textcoords="offset points", xytext=(3, -8), fontsize=6)
 

@@ -38,14 +38,14 @@ def stamp(t_ns: int) -> Timestamp:
     return Timestamp(seconds=t_ns // 1_000_000_000, nanos=t_ns % 1_000_000_000)
 
 
-def turned(heading: float) -> Quaternion:
+def heading_rotation(heading: float) -> Quaternion:
     """Return the rotation by ``heading`` [rad] about z."""
     return Quaternion(z=math.sin(0.5 * heading), w=math.cos(0.5 * heading))
 
 
-def posed(x: float, y: float, heading: float, z: float = 0.0) -> Pose:
+def planar_pose(x: float, y: float, heading: float, z: float = 0.0) -> Pose:
     """Return a pose in the plane, lifted by ``z`` [m]."""
-    return Pose(position=Vector3(x=x, y=y, z=z), orientation=turned(heading))
+    return Pose(position=Vector3(x=x, y=y, z=z), orientation=heading_rotation(heading))
 
 
 class Frames:
@@ -96,7 +96,7 @@ def still_life(t_ns: int, car: CarOutline, stage: Surroundings) -> SceneUpdate:
     _draw_stage(update, t_ns, stage)
     if stage.target is not None:
         goal = _entity(update, t_ns, "target", WORLD)
-        _line(goal, car.outline(), GREEN, 0.05, posed(*stage.target))
+        _line(goal, car.outline(), GREEN, 0.05, planar_pose(*stage.target))
     return update
 
 
@@ -104,17 +104,17 @@ def _draw_car(update: SceneUpdate, t_ns: int, car: CarOutline) -> None:
     body = _entity(update, t_ns, "car", CAR)
     length, middle = car.front + car.rear, 0.5 * (car.front - car.rear)
     body.cubes.add(
-        pose=posed(middle, 0.0, 0.0, 0.5 * CAR_HEIGHT + 0.15),
+        pose=planar_pose(middle, 0.0, 0.0, 0.5 * CAR_HEIGHT + 0.15),
         size=Vector3(x=length, y=2.0 * car.half_width, z=CAR_HEIGHT),
         color=_color((*BODY[:3], 0.45)),
     )
     _line(body, car.outline(), BODY, 0.06)
     size = Vector3(x=2.0 * WHEEL_RADIUS, y=WHEEL_WIDTH, z=2.0 * WHEEL_RADIUS)
     for x, y in car.wheels()[:2]:
-        body.cubes.add(pose=posed(x, y, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
+        body.cubes.add(pose=planar_pose(x, y, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
     for name in FRONT_WHEELS:
         wheel = _entity(update, t_ns, name, name)
-        wheel.cubes.add(pose=posed(0.0, 0.0, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
+        wheel.cubes.add(pose=planar_pose(0.0, 0.0, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
     ghost = _entity(update, t_ns, "odometry", ODOMETRY)
     _line(ghost, car.outline(), (*ORANGE[:3], 0.5), 0.03)
 
@@ -131,10 +131,10 @@ def _draw_stage(update: SceneUpdate, t_ns: int, stage: Surroundings) -> None:
             continue
         obstacle = _entity(update, t_ns, f"obstacle_{number}", WORLD)
         size = Vector3(x=box.length, y=box.width, z=CAR_HEIGHT)
-        obstacle.cubes.add(pose=posed(box.x, box.y, box.heading, 0.5 * CAR_HEIGHT), size=size, color=_color(GREY))
+        obstacle.cubes.add(pose=planar_pose(box.x, box.y, box.heading, 0.5 * CAR_HEIGHT), size=size, color=_color(GREY))
 
 
-def planned_path(t_ns: int, points: Array) -> SceneUpdate:
+def path_update(t_ns: int, points: Array) -> SceneUpdate:
     """Return the planned path as a line; without points, its removal."""
     update = SceneUpdate()
     if len(points):
@@ -152,7 +152,7 @@ def trail(t_ns: int, poses: list[bytes]) -> bytes:
 
 def trail_pose(pose: tuple[float, float, float]) -> bytes:
     """Return a pose as a part of a trail: fields of a protobuf message may be written one after the other."""
-    return PosesInFrame(poses=[posed(*pose)]).SerializeToString(deterministic=True)
+    return PosesInFrame(poses=[planar_pose(*pose)]).SerializeToString(deterministic=True)
 
 
 def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntity:
@@ -162,7 +162,7 @@ def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntit
 def _line(
     entity: SceneEntity, points: Array, color: tuple[float, ...], thickness: float, at: Pose | None = None
 ) -> None:
-    line = entity.lines.add(pose=at or posed(0.0, 0.0, 0.0), thickness=thickness, color=_color(color))
+    line = entity.lines.add(pose=at or planar_pose(0.0, 0.0, 0.0), thickness=thickness, color=_color(color))
     for x, y in points.tolist():
         line.points.add(x=x, y=y, z=0.02)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.drawing.decimation import decimated
+from orchestrator.drawing.decimation import decimate
 from orchestrator.drawing.overview import Overview, Ribbon, Standing
 from orchestrator.drawing.panels import PICTURE_MODES, picture_signals
 from orchestrator.scenario.scenario import Scenario
@@ -15,13 +15,13 @@ from orchestrator.text.readable import changes_text, manoeuvres_text
 from orchestrator.verdict.geometry import (
     PLANNED,
     CarOutline,
-    described,
     is_planned,
     kerbs,
     key_points,
     sample_path,
     slot_box,
     things,
+    vehicle_parameters,
 )
 from orchestrator.verdict.summary import Summary, phase_changes
 
@@ -37,8 +37,8 @@ DRAWN = dict.fromkeys(
 
 def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> Overview:
     """Return what the picture of a run shows."""
-    recording = decimated(recording)
-    vehicle = described(scenario, recording.parameters_of("vehicle"))
+    recording = decimate(recording)
+    vehicle = vehicle_parameters(scenario, recording.parameters_of("vehicle"))
     around = Standing(
         things(vehicle),
         [list(corners) for corners in scenario.obstacles],
@@ -54,8 +54,8 @@ def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> O
         ribbon=_ribbon(recording),
         car=CarOutline.of(vehicle),
         around=around,
-        planned=_planned(recording),
-        points=fixed_points(recording),
+        planned=_last_path(recording),
+        points=path_points(recording),
     )
 
 
@@ -76,7 +76,7 @@ def _ribbon(recording: Recording) -> Ribbon:
     return Ribbon(values, recording.states(shown))
 
 
-def fixed_points(recording: Recording) -> dict[str, tuple[float, float]]:
+def path_points(recording: Recording) -> dict[str, tuple[float, float]]:
     """Return the points of the last path by name, Q1 to Q4 or P1 to P4 [m]; LA1 and LA2 move with the car."""
     rows = np.flatnonzero(is_planned(recording.signals))
     if not len(rows):
@@ -85,7 +85,7 @@ def fixed_points(recording: Recording) -> dict[str, tuple[float, float]]:
     return {name: point for name, point in points.items() if not name.startswith("LA")}
 
 
-def planned_paths(recording: Recording, most: int = 40) -> list[Array]:
+def path_plans(recording: Recording, most: int = 40) -> list[Array]:
     """Return the paths planned during a run one after the other, (n, 2) [m] each: at most the last ``most``."""
     planned = is_planned(recording.signals)
     names = [name for name in recording.signals if PLANNED.match(name.removeprefix("controller."))]
@@ -98,7 +98,7 @@ def planned_paths(recording: Recording, most: int = 40) -> list[Array]:
     return [sample_path(recording.values_at("controller", int(row)), parameters=parameters) for row in rows]
 
 
-def _planned(recording: Recording) -> Array:
+def _last_path(recording: Recording) -> Array:
     """Return the last path that was planned, (n, 2) [m]."""
     rows = np.flatnonzero(is_planned(recording.signals))
     if not len(rows):

@@ -37,7 +37,7 @@ def picture_height(columns: int) -> float:
     return BASE_HEIGHT + ROW_HEIGHT * (_rows(columns) - 1)
 
 
-def raised(place: AxesPlace, columns: int) -> AxesPlace:
+def raise_place(place: AxesPlace, columns: int) -> AxesPlace:
     """Return a place above the panels in a picture that may have more rows of them than one."""
     height = picture_height(columns)
     bottom = place.bottom * BASE_HEIGHT + height - BASE_HEIGHT

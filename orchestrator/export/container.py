@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.cosim.fmu_files import wanted_platforms
+from orchestrator.cosim.fmu_files import select_platforms
 from orchestrator.export.ssp import add_system_arguments
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.text.console import working
@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     from orchestrator.export.system_of import one_model
 
     scenario = load_scenario(arguments.scenario, arguments.set)
-    platforms = wanted_platforms(arguments.platform)
+    platforms = select_platforms(arguments.platform)
     model = one_model(scenario, arguments.parameter, arguments.input, arguments.output)
     out: Path = arguments.out or Path(f"{scenario.name}.fmu")
     try:

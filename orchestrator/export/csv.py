@@ -7,7 +7,7 @@ from pathlib import Path
 from fmus.files import whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.text.owned import owned_with
+from orchestrator.text.owned import lock_with
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -40,7 +40,7 @@ def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the table. Returns 0."""
     out: Path = arguments.out or arguments.log.with_suffix(".csv")
-    with owned_with(arguments.log, out):
+    with lock_with(arguments.log, out):
         recording = read_log(arguments.log)
         write_csv(out, recording, matching(recording.signals, arguments.signals), arguments.names)
     print(out)

@@ -13,7 +13,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.read_log import read_log
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned_with
+from orchestrator.text.owned import lock_with
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out or arguments.log.with_suffix(".mf4")
     if out.suffix != ".mf4":
         raise BadInput("the name of an MDF 4 file ends in .mf4", file=out)
-    with owned_with(arguments.log, out):
+    with lock_with(arguments.log, out):
         recording = read_log(arguments.log)
         write_mf4(out, recording, matching(recording.signals, arguments.signals))
     print(out)

@@ -14,7 +14,7 @@ from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.drawing.decimation import decimated
+from orchestrator.drawing.decimation import decimate
 from orchestrator.drawing.panels import PANELS
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.line import Line
@@ -22,10 +22,10 @@ from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import read_log
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned_with
+from orchestrator.text.owned import lock_with
 from orchestrator.text.patterns import matching
-from orchestrator.verdict.geometry import CarOutline, boxes, described, place, sample_path, slot_box
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.geometry import CarOutline, boxes, place, sample_path, slot_box, vehicle_parameters
+from orchestrator.verdict.logged import read_logged_run
 
 EXAMPLES = """examples:
   apa export rerun runs/guo2015-case4/run.mcap
@@ -50,11 +50,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
     out: Path = arguments.out or arguments.log.with_suffix(".rrd")
-    with owned_with(arguments.log, out):
+    with lock_with(arguments.log, out):
         recording = read_log(arguments.log)
         names = matching(recording.signals, arguments.signals)
         if recording.is_stored:
-            recording = decimated(recording)
+            recording = decimate(recording)
             say(f"apa: note: a long run; {recording.count} of its instants are exported")
         write_rerun(out, recording, names, read_messages(arguments.log))
     print(out)
@@ -120,11 +120,13 @@ def _flat(points: Array) -> Array:
 
 
 def _still(rr: Any, stream: Any, recording: Recording) -> None:
-    scenario = logged(recording).scenario
+    scenario = read_logged_run(recording).scenario
     if scenario.slot is not None:
         line = rr.LineStrips2D([_flat(slot_box(scenario.slot).outline())], colors=[[120, 160, 220]])
         stream.log("scene/slot", line, static=True)
-    obstacles = [_flat(box.outline()) for box in boxes(described(scenario, recording.parameters_of("vehicle")))]
+    obstacles = [
+        _flat(box.outline()) for box in boxes(vehicle_parameters(scenario, recording.parameters_of("vehicle")))
+    ]
     if obstacles:
         stream.log("scene/obstacles", rr.LineStrips2D(obstacles, colors=[[130, 130, 130]]), static=True)
     if len(recording.t):

@@ -26,7 +26,7 @@ def parts_of(scenario: Scenario) -> dict[str, Model]:
         raise BadInput("exports are of our vehicle and controller; leave out", file=scenario.file, key="system")
     if scenario.faults:
         raise BadInput("faults live in apa's own master; leave them out to export", file=scenario.file, key="faults")
-    given = {name: scenario.given(name) for name in MODELS}
+    given = {name: scenario.parameters_for(name) for name in MODELS}
     models = models_for(scenario.controller)
     return {name: of_one_system(model, given[name]).with_start_values(given[name]) for name, model in models.items()}
 

@@ -14,7 +14,7 @@ from orchestrator.falsification.subject import Subject
 from orchestrator.falsification.written import space_of
 from orchestrator.session.foreign import Foreign, fitting, fmu_of, parameters_of
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import compiled, rows_by
+from orchestrator.sweep.batch import compile_models, rows_by
 from orchestrator.sweep.engine import ChunkTask
 from orchestrator.sweep.engines import RECORDED_CHUNK, choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, chunk_scenario
@@ -44,7 +44,7 @@ def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
     task = _task(study, arguments)
     subject = Subject(study, space, objective, make_engine(task, None, arguments.jobs), journal)
     if task.is_compiled:
-        compiled(tuple(subject.job.measures), study.scenario)
+        compile_models(tuple(subject.job.measures), study.scenario)
     return subject
 
 

@@ -62,7 +62,7 @@ def write_counterexample(subject: Subject, counterexample: Counterexample, folde
     own = {
         "name": counterexample.name,
         "title": f"Breaks: {subject.objective.text}",
-        "description": _said(subject, counterexample),
+        "description": _describe(subject, counterexample),
     }
     content = scenario.with_requirements(limits).model_copy(update={**own, "source": f"hunt in {subject.study.name}"})
     path = folder / f"{counterexample.name}.yaml"
@@ -78,7 +78,7 @@ def _text(scenario: Scenario) -> str:
     return text
 
 
-def _said(subject: Subject, counterexample: Counterexample) -> str:
+def _describe(subject: Subject, counterexample: Counterexample) -> str:
     parts = [
         f"{name} {item['value']:.4g} {item['unit']}" if isinstance(item["value"], float) else f"{name} {item['value']}"
         for name, item in factors_of(subject, counterexample).items()

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.requirements import REQUIREMENT_SETS, Requirement, shipped_requirements
+from orchestrator.scenario.requirements import REQUIREMENT_SETS, Requirement, library_requirements
 from orchestrator.sweep.rows import measure_of
 from orchestrator.sweep.study.study import Objective, Study
 from orchestrator.text.errors import BadInput, suggestion_or_choices
@@ -26,7 +26,7 @@ def objective_of(study: Study, name: str | None) -> Objective:
         return own[name]
     known: dict[str, Sequence[Requirement]] = {"contact": [CONTACT]}
     for path in sorted(REQUIREMENT_SETS.glob("*.yaml")):
-        items = shipped_requirements(path.stem)
+        items = library_requirements(path.stem)
         known |= {path.stem: items} | {f"{path.stem}: {item.id}": [item] for item in items}
     known |= {f"within {key}": items for key, items in study.within.items()}
     known |= {item.id: [item] for item in study.scenario.requirements}

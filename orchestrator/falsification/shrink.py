@@ -47,7 +47,7 @@ def chance(subject: Subject, found: Seed, seed: int) -> float:
 def _fewer(subject: Subject, found: Seed, nominal: Array) -> Seed:
     """Return the run with more factors at their nominal values; the same if each that is left is needed."""
     left = away(subject.space, found.shares)
-    alone = _tried(subject, found, [_with(found.shares, nominal, [factor]) for factor in left])
+    alone = _run_points(subject, found, [_with(found.shares, nominal, [factor]) for factor in left])
     needless = [factor for factor, one in zip(left, alone, strict=True) if one is not None]
     if not needless:
         return found
@@ -57,7 +57,7 @@ def _fewer(subject: Subject, found: Seed, nominal: Array) -> Seed:
     rest = needless[1:]
     while rest and size:
         size = min(size, len(rest))
-        (one,) = _tried(subject, found, [_with(found.shares, nominal, [*together, *rest[:size]])])
+        (one,) = _run_points(subject, found, [_with(found.shares, nominal, [*together, *rest[:size]])])
         if one is not None:
             kept, together, rest = one, [*together, *rest[:size]], rest[size:]
         elif size == 1:
@@ -75,7 +75,7 @@ def _milder(subject: Subject, found: Seed, nominal: Array, factor: int) -> Seed:
     for _ in range(BISECTION_STEPS):
         middle = found.shares.copy()
         middle[factor] = 0.5 * (good + bad)
-        (one,) = _tried(subject, found, [middle])
+        (one,) = _run_points(subject, found, [middle])
         if one is None:
             bad = float(middle[factor])
         else:
@@ -89,7 +89,7 @@ def _with(shares: Array, nominal: Array, factors: list[int]) -> Array:
     return changed
 
 
-def _tried(subject: Subject, found: Seed, points: list[Array]) -> list[Seed | None]:
+def _run_points(subject: Subject, found: Seed, points: list[Array]) -> list[Seed | None]:
     """Return for each point the run with the seed of ``found``, None if it does not break."""
     if not points:
         return []

@@ -16,7 +16,7 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.falsification.objective import smallest
 from orchestrator.scenario.scenario import PENETRATION, Scenario
-from orchestrator.sweep.columns import filled
+from orchestrator.sweep.columns import fill_columns
 from orchestrator.sweep.engine import Engine, all_rows
 from orchestrator.sweep.job import Chunk, Job, make_job, truths
 from orchestrator.sweep.rows import FIRST_MEASURE
@@ -64,7 +64,7 @@ class Subject:
         """Return what runs come to, from the journal if they were made before. Raises ``Stopped``."""
         part = self._journal / f"{self._batches:06d}.npz"
         self._batches += 1
-        seen = _kept(part, shares, seeds) or self._made(part, shares, seeds)
+        seen = _read_part(part, shares, seeds) or self._run_part(part, shares, seeds)
         self.runs += len(seeds)
         self.broken += int((seen.margins <= 0.0).sum())
         if self.meter is not None:
@@ -76,14 +76,14 @@ class Subject:
         seeds = np.array([seed], dtype=np.int64)
         return Chunk(0, 0, self.space.values(shares[None], seeds), seeds)
 
-    def _made(self, part: Path, shares: Array, seeds: Seeds) -> Seen:
+    def _run_part(self, part: Path, shares: Array, seeds: Seeds) -> Seen:
         values = self.space.values(shares, seeds)
-        design = Design(self.study.design.fields, values, seeds, self.space.named(shares))
+        design = Design(self.study.design.fields, values, seeds, self.space.values_by_name(shares))
         study = self.study._replace(design=design)
         margins, words = np.full(len(seeds), np.nan), np.full(len(seeds), "", dtype=object)
         for chunk, rows in all_rows(self._engine.results(self.job, self._chunks(design), self.interrupt)):
             here = slice(chunk.first, chunk.first + len(chunk.seeds))
-            columns = filled(study, self.job, chunk, rows)
+            columns = fill_columns(study, self.job, chunk, rows)
             found = _margins(self.objective, self.job, chunk, rows, columns)
             margins[here] = np.where(columns["outcome"] == "aborted", np.minimum(found, -ABORTED_MARGIN), found)
             words[here] = _words(columns)
@@ -105,7 +105,7 @@ ABORTED_MARGIN = 1.0
 """A run that a model has aborted is beyond its limits by this at least: nobody knows what it would have come to."""
 
 
-def _kept(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
+def _read_part(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
     """Return what is in the journal of just these runs; None if nothing is, or what is there is damaged.
 
     What cannot be read for lack of memory or files is not damaged: the error passes through.

@@ -22,7 +22,7 @@ SYSTEMS3 = {"linux": "linux", "win32": "windows", "darwin": "darwin"}
 SUFFIXES = {"linux": ".so", "win32": ".dll", "darwin": ".dylib"}
 
 
-def checked(path: Path) -> list[str]:
+def check_archive(path: Path) -> list[str]:
     """Return the names in an FMU's archive. Raises ``BadInput`` for one that must not be unpacked."""
     if not path.is_file():
         raise BadInput("no such file", file=path)
@@ -48,7 +48,7 @@ def checked(path: Path) -> list[str]:
     return names
 
 
-def packed(folder: Path) -> Path:
+def pack(folder: Path) -> Path:
     """Return the archive of an FMU that lies there unzipped: the same files give the same archive, made once.
 
     Raises ``BadInput`` if it is no FMU, too large, or has links.

@@ -28,9 +28,9 @@ from orchestrator.cosim.description import element_names, has_variable_step, por
 from orchestrator.cosim.python_fmu import instantiation_message
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
-from orchestrator.foreign.archive import binary, checked, unpack
+from orchestrator.foreign.archive import binary, check_archive, unpack
 from orchestrator.foreign.limits import FmuLimits
-from orchestrator.foreign.sandbox import sandboxed
+from orchestrator.foreign.sandbox import sandbox_command
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 from orchestrator.text.printable import printable
 from orchestrator.text.quantities import MOST_WHOLE
@@ -81,7 +81,7 @@ class ProcessSlave:
     ) -> None:
         self.name = name
         self.path = path
-        self._names = checked(path)
+        self._names = check_archive(path)
         self._description = read_description(path)
         self.identity = str(self._description.guid)
         self.has_variable_step = has_variable_step(self._description)
@@ -219,14 +219,14 @@ class ProcessSlave:
         """Wait until an order is done. Raises ``RunError`` if the FMU refuses, crashes, leaves or takes too long."""
         assert self._process is not None
         try:
-            self._process.ask(order, data, self._limits.step_timeout, self._heard)
+            self._process.ask(order, data, self._limits.step_timeout, self._on_log_message)
         except _NoAnswerError as error:
             when = when or f"in the step at {self._t_ns / 1e9:g} s"
             made = NotRunError if order == worker.LOAD or error.is_from_outside else RunError
             text = str(error).format(when=when)
             raise made(f"{self.name} {instantiation_message(text) if order == worker.LOAD else text}") from None
 
-    def _heard(self, status: int, text: str) -> None:
+    def _on_log_message(self, status: int, text: str) -> None:
         self._log(self.name, status, text)
 
     def _settings(self) -> list[dict[str, Any]]:
@@ -273,7 +273,7 @@ class _Process:
 
     def __init__(self, folder: Path, room: Path, limits: FmuLimits) -> None:
         self._printed = room / "printed"
-        wrapper = sandboxed(room) if limits.is_sandboxed else []
+        wrapper = sandbox_command(room) if limits.is_sandboxed else []
         with self._printed.open("wb") as output:
             self._child = own_process("orchestrator.foreign.worker", folder, output, wrapper)
         LIVING.add(self._child)
@@ -307,9 +307,9 @@ class _Process:
                     raise _NoAnswerError(f"{what}: {text or 'no message'}".replace("{", "{{").replace("}", "}}"))
                 heard(status, text)
         except (OSError, EOFError):
-            raise self._gone(limit) from None
+            raise self._exit_error(limit) from None
         except worker.ForeignAnswerError:
-            raise self._interfered() from None
+            raise self._interference_error() from None
         finally:
             self._deadline = float("inf")
             self._left -= time.monotonic() - begun
@@ -351,14 +351,14 @@ class _Process:
                 end(self._child)
                 return
 
-    def _interfered(self) -> _NoAnswerError:
+    def _interference_error(self) -> _NoAnswerError:
         end(self._child)
         self._child.wait()
         found = _NoAnswerError("wrote into the pipe of its process {when}, so nothing that it gave can be trusted")
         found.is_from_outside = True
         return found
 
-    def _gone(self, limit: float) -> _NoAnswerError:
+    def _exit_error(self, limit: float) -> _NoAnswerError:
         try:
             code = self._child.wait(EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:

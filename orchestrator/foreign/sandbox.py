@@ -15,7 +15,7 @@ HIDDEN = ("/home", "/root", "/tmp", "/var/tmp", "/run", "/mnt", "/media")
 """Folders of which an FMU sees nothing but what it needs."""
 
 
-def sandboxed(folder: Path) -> list[str]:
+def sandbox_command(folder: Path) -> list[str]:
     """Return what begins the command of a process that may write to ``folder`` alone.
 
     Raises ``BadInput`` where bubblewrap is absent or may not be used.

@@ -97,8 +97,10 @@ class Worker:
         orders: dict[bytes, Callable[[bytes], None]] = {
             LOAD: self._load,
             PARAMETERS: self._parameters,
-            INITIALIZE: lambda data: self._checked(self._fmu.initialize(*json.loads(data)), "refuses to initialize"),
-            START: lambda data: self._checked(self._fmu.start(), "refuses to start"),
+            INITIALIZE: lambda data: self._check_status(
+                self._fmu.initialize(*json.loads(data)), "refuses to initialize"
+            ),
+            START: lambda data: self._check_status(self._fmu.start(), "refuses to start"),
             OUTPUTS: lambda data: self._outputs(),
             INPUTS: lambda data: self._inputs(),
             STEP: self._step_with_inputs,
@@ -148,12 +150,12 @@ class Worker:
     def _parameters(self, data: bytes) -> None:
         for group in json.loads(data):
             if group["type"] == "String":
-                self._checked(self._fmu.set_texts(group["references"], group["values"]), "refuses its parameters")
+                self._check_status(self._fmu.set_texts(group["references"], group["values"]), "refuses its parameters")
                 continue
             values = bytearray(struct.pack(f"={len(group['values'])}d", *group["values"]))
             transfer = self._fmu.transfer("Set", group, fmi_calls.NumbersAt(values, 0))
             transfer.take()
-            self._checked(transfer(), "refuses its parameters")
+            self._check_status(transfer(), "refuses its parameters")
 
     def _step_with_inputs(self, data: bytes) -> None:
         self._inputs()
@@ -172,11 +174,11 @@ class Worker:
     def _inputs(self) -> None:
         for transfer in self._sets:
             transfer.take()
-            self._checked(transfer(), "refuses its inputs")
+            self._check_status(transfer(), "refuses its inputs")
 
     def _outputs(self) -> None:
         for transfer in self._gets:
-            self._checked(transfer(), "gives no outputs")
+            self._check_status(transfer(), "gives no outputs")
             transfer.give()
 
     def _close(self, data: bytes) -> None:
@@ -186,7 +188,7 @@ class Worker:
             if max(status, self._worst) < fmi_calls.FATAL:
                 self._fmu.free()
 
-    def _checked(self, status: int, what: str) -> None:
+    def _check_status(self, status: int, what: str) -> None:
         if fmi_calls.is_failure(status):
             raise fmi_calls.RefusedError(what, status)
 

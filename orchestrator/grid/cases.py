@@ -13,11 +13,11 @@ from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
 from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.scenario.slot_sizes import shipped_slot_sizes
+from orchestrator.scenario.slot_sizes import library_slot_sizes
 
-ISO = SlotSizes(**shipped_slot_sizes("iso16787"))
+ISO = SlotSizes(**library_slot_sizes("iso16787"))
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
 STEERING_RATIO = 19.0
@@ -150,10 +150,10 @@ def scenario_of(case: GridCase) -> Scenario:
         controller=controller,
         target=target,
         slot=slot,
-        requirements=[*gbt_limits("gbt41630"), *shipped_requirements("no-contact")],
+        requirements=[*gbt_limits("gbt41630"), *library_requirements("no-contact")],
     )
 
 
 def gbt_limits(name: str) -> list[Requirement]:
     """Return a set of GB/T 41630's limits but for the speed, which is asked of parking, not of the way past."""
-    return [item for item in shipped_requirements(name) if item.id != "speed"]
+    return [item for item in library_requirements(name) if item.id != "speed"]

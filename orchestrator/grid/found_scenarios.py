@@ -10,7 +10,7 @@ from orchestrator.grid.found_slots import SEED_STRIDE, FoundCase, SlotPlace, box
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.obstacle_map import box_corners
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 
 STOP_TIME = 240.0
@@ -52,7 +52,7 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
         controller=controller,
         target=target,
         slot=slot,
-        requirements=[*shipped_requirements("valet-slot")],
+        requirements=[*library_requirements("valet-slot")],
     )
 
 
@@ -82,7 +82,7 @@ def out_of(case: FoundCase) -> Scenario:
             "controller": scenario.controller | told,
             "target": target,
             "slot": None,
-            "requirements": [*shipped_requirements("valet")],
+            "requirements": [*library_requirements("valet")],
         }
     )
 

@@ -46,7 +46,7 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
         scenario = out_of(case) if out else scenario_of(case, told)
         scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if told or out else scenario))
         if ways:
-            scenarios.append(LabelledScenario(_labels(case, WAY), _planned(case)))
+            scenarios.append(LabelledScenario(_labels(case, WAY), _planning_scenario(case)))
     scenario, design = design_of(scenarios)
     content = {
         "name": "valet-slots",
@@ -57,7 +57,7 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
     return Study(scenario, design, content, measures=MEASURES)
 
 
-def _planned(case: FoundCase) -> Scenario:
+def _planning_scenario(case: FoundCase) -> Scenario:
     """Return the short scenario in which the valet plans with the map and the target told."""
     told = _with_map(scenario_of(case, told=True))
     return told.model_copy(update={"stop_time": PLANNING_TIME, "controller": told.controller | {"plan.at_once": 100}})

@@ -174,6 +174,6 @@ def side_of(case: OutCase) -> int:
     return ChosenSide.LEFT if case.side > 0 else ChosenSide.RIGHT
 
 
-def named(case: OutCase) -> dict[str, str | float]:
+def case_labels(case: OutCase) -> dict[str, str | float]:
     """Return what a case is called in the table."""
     return {**case._asdict(), "kind": KINDS[case.kind]}

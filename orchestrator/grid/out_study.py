@@ -9,11 +9,11 @@ from rich.table import Table as Printed
 
 from modelkit.vocabulary import Pose
 from orchestrator.grid.cases import CARS, KINDS
-from orchestrator.grid.out_cases import PASSES, OutCase, case_of, cases, named, side_of, vehicle_of
+from orchestrator.grid.out_cases import PASSES, OutCase, case_labels, case_of, cases, side_of, vehicle_of
 from orchestrator.grid.out_known import free_ahead, moves_out
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import find_field
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
@@ -62,14 +62,14 @@ def scenario_of(case: OutCase) -> Scenario:
             Fault(signal="controller.driver_selection.task", kind="override", value="pull_out"),
             Fault(signal="controller.driver_selection.side", kind="override", value="left"),
         ],
-        requirements=[*shipped_requirements("no-contact")],
+        requirements=[*library_requirements("no-contact")],
     )
 
 
 def study(runs: int = 400, lot: int = 0, people: bool = False) -> Study:
     """Return so many runs; ``people``: with a person on the road beside each slot."""
     chosen = cases(runs, lot, people)
-    scenario, design = design_of(LabelledScenario(named(case), scenario_of(case)) for case in chosen)
+    scenario, design = design_of(LabelledScenario(case_labels(case), scenario_of(case)) for case in chosen)
     side = np.array([[float(side_of(case))] for case in chosen])
     field = find_field("faults[2].value", scenario)
     design = design._replace(fields=[*design.fields, field], values=np.hstack([design.values, side]))

@@ -112,7 +112,7 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
     )
 
 
-def _found(columns: Columns) -> Mapping[str, Array]:
+def _detection_columns(columns: Columns) -> Mapping[str, Array]:
     """Return how well the slot was found, of each run."""
     names = ("lot", "number", *SIGNALS)
     rows = zip(*(columns[name].tolist() for name in names), strict=True)
@@ -144,7 +144,7 @@ def corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, floa
     true, believed = pose_of(row, POSE), pose_of(row, ODOMETRY)
     found = ((row[f"{name}.x"], row[f"{name}.y"]) for name in CORNERS)
     pairs = zip(found, ((0.0, 0.0), (case.length, 0.0)), strict=True)
-    a, b = (math.dist(_seen_from(believed, one), _seen_from(true, other)) for one, other in pairs)
+    a, b = (math.dist(_in_frame(believed, one), _in_frame(true, other)) for one, other in pairs)
     return a, b
 
 
@@ -153,7 +153,7 @@ def pose_of(row: Mapping[str, float], name: str) -> Pose:
     return Pose(row[f"{name}.x"], row[f"{name}.y"], row[f"{name}.heading"])
 
 
-def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
+def _in_frame(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
     return in_frame(*point, 0.0, pose)[:2]
 
 
@@ -166,5 +166,5 @@ FOUND = Derived(
         "along": Number("m", "x of the rear axle beyond corner B when the car stood to plan"),
         "inside": Number("1", "1: it stood inside the start range then"),
     },
-    _found,
+    _detection_columns,
 )

@@ -103,7 +103,7 @@ def _labels(case: GridCase) -> dict[str, str | float]:
     }
 
 
-def _shown(columns: Columns) -> Mapping[str, Any]:
+def _display_columns(columns: Columns) -> Mapping[str, Any]:
     """Return what was shown in each run, and how exact."""
     names = ("lot", "number", *SIGNALS, HEADING)
     rows = zip(*(columns[name].tolist() for name in names), strict=True)
@@ -133,7 +133,7 @@ SHOWN = Derived(
         "slot_heading": Number("rad", "heading error of the displayed slot, in the vehicle frame"),
         "kind_right": Number("1", "1: displayed with the correct slot type"),
     },
-    _shown,
+    _display_columns,
     {"search": "what became of the search: " + ", ".join(WORDS)},
 )
 

@@ -20,7 +20,7 @@ from orchestrator.grid.cases import CARS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.obstacle_map import map_of
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
@@ -91,7 +91,7 @@ def scenario_of(case: RowCase) -> Scenario:
         },
         target=target,
         slot=Slot(x=middle[0], y=middle[1], heading=-turn, length=depth, width=width),
-        requirements=[*shipped_requirements("valet")],
+        requirements=[*library_requirements("valet")],
     )
     return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
 

@@ -8,7 +8,7 @@ from rich.table import Table as Printed
 from controller_fmu.apa.chart import Mode
 from orchestrator.grid.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
 from orchestrator.grid.parkings import FAILED, FOUND, GBT, HOUSE, HOUSE_BUT_SHIFTS, MEASURES, GridRun, parkings
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
@@ -35,8 +35,8 @@ def study_of(chosen: list[GridCase]) -> Study:
     }
     within = {
         **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
-        HOUSE: [*shipped_requirements("apa"), CLEAR],
-        HOUSE_BUT_SHIFTS: [*shipped_requirements("apa-tight"), CLEAR],
+        HOUSE: [*library_requirements("apa"), CLEAR],
+        HOUSE_BUT_SHIFTS: [*library_requirements("apa-tight"), CLEAR],
     }
     return Study(scenario, design, content, measures=MEASURES, within=within, derived=FOUND)
 

@@ -19,7 +19,7 @@ from orchestrator.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.sweep.verdict import limit_value
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.limit_text import required_text
+from orchestrator.verdict.limit_text import requirement_text
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, OF_WHOLE_RUNS, STANDING
 
@@ -31,7 +31,7 @@ def why_not(scenario: Scenario) -> str:
     return "" if scenario.system is None else "its system has FMUs that the page has not"
 
 
-def shipped(system: str = "") -> list[Scenario]:
+def page_scenarios(system: str = "") -> list[Scenario]:
     """Return the shipped scenarios of one page, one with much to see first: of our models, or a controller apart."""
     names = [FIRST, *(name for name in scenario_names() if name != FIRST)]
     scenarios = [scenario for scenario in map(load_scenario, names) if not why_not(scenario)]
@@ -126,7 +126,7 @@ def _limit(item: Requirement, measures: list[Measure]) -> dict[str, Any]:
     first = measures_of(item)[1:] if found is not None and item.window is not None else []
     return {
         **{"id": item.id, "signal": item.signal, "condition": item.condition, "limit": limit_value(item)},
-        **{"source": item.source, "required": item.required, "where": item.where, "text": required_text(item)},
+        **{"source": item.source, "required": item.required, "where": item.where, "text": requirement_text(item)},
         "sign": CONDITIONS[item.condition].sign,
         "number": is_number,
         "measure": measures.index(found) if found is not None else -1,

@@ -67,7 +67,7 @@ class McapFile:
         self._begin_chunk()
         self._write(MCAP0_MAGIC + _bytes(Header(profile="", library=LIBRARY)))
 
-    def known_channel(self, topic: str, message: type[Any]) -> int:
+    def add_channel(self, topic: str, message: type[Any]) -> int:
         """Return a new channel for a generated protobuf message class."""
         descriptors = build_file_descriptor_set(message).SerializeToString(deterministic=True)
         return self.channel(topic, message.DESCRIPTOR.full_name, descriptors, {})

@@ -35,11 +35,11 @@ from orchestrator.verdict.geometry import (
     PLANNED,
     CarOutline,
     boxes,
-    described,
     edges,
     kerbs,
     sample_path,
     slot_box,
+    vehicle_parameters,
 )
 
 SCENE_PERIOD_NS = 50_000_000
@@ -80,12 +80,12 @@ class McapLog:
         """Of ``/log``."""
         places = places_of(slaves)
         self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
-        self._log = self._file.known_channel("/log", Log)
+        self._log = self._file.add_channel("/log", Log)
         for slave in slaves:
             self._write_parameters(slave)
         named = {slave.name: slave for slave in slaves}
         self._pictures: list[_Pictures] = []
-        drawn = _drawn(named["vehicle"]) if "vehicle" in named else []
+        drawn = _frame_ports(named["vehicle"]) if "vehicle" in named else []
         if drawn:
             self._pictures.append(_Pictures(self._file, named, scenario, drawn))
         size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
@@ -97,10 +97,10 @@ class McapLog:
         self._count = 0
         self._file.flush()
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Keep a row; a chunk's worth of them goes to the file at once."""
         for pictures in self._pictures:
-            pictures.exchanged(t_ns)
+            pictures.on_communication_point(t_ns)
         self._times[self._count] = t_ns
         self._rows[self._count] = self._values
         self._count += 1
@@ -120,11 +120,11 @@ class McapLog:
         if isinstance(self._file, McapFile):
             self._file.discard()
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Write how the run ended and give the file its name."""
         self._write_rows()
         for pictures in self._pictures:
-            pictures.closed(end.t_ns)
+            pictures.on_terminate(end.t_ns)
         self._file.metadata("end", with_checksum({"reason": end.reason, "t_ns": end.t_ns}))
         self._file.close()
 
@@ -152,13 +152,13 @@ class _Pictures:
         self._file = file
         self._drawn = drawn
         self._controller = slaves.get("controller")
-        around = described(scenario, _named(slaves["vehicle"].parameters))
+        around = vehicle_parameters(scenario, _values_by_name(slaves["vehicle"].parameters))
         self._car = CarOutline.of(around)
         self._frames = scene.Frames(self._car)
-        self._transforms = file.known_channel("/tf", FrameTransforms)
-        self._scene = file.known_channel("/scene", SceneUpdate)
-        self._path = file.known_channel("/path", SceneUpdate)
-        self._trail = file.known_channel("/trail", PosesInFrame)
+        self._transforms = file.add_channel("/tf", FrameTransforms)
+        self._scene = file.add_channel("/scene", SceneUpdate)
+        self._path = file.add_channel("/path", SceneUpdate)
+        self._trail = file.add_channel("/trail", PosesInFrame)
         self._poses: list[bytes] = []
         self._trail_count, self._trail_stride = 0, 1
         self._next_ns = 0
@@ -169,7 +169,7 @@ class _Pictures:
         self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.obstacles), target)
         self._changes = self._stage.changes_ns()
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         if t_ns < self._next_ns:
             return
         if self._changes and t_ns >= self._changes[0]:
@@ -188,7 +188,7 @@ class _Pictures:
             self._draw_trail(t_ns)
         self._draw_path(t_ns)
 
-    def closed(self, t_ns: int) -> None:
+    def on_terminate(self, t_ns: int) -> None:
         if self._poses:
             self._draw_trail(t_ns)
 
@@ -214,8 +214,8 @@ class _Pictures:
         seen = outputs.values[self._path_places].tobytes() + bytes([on_road])
         if seen != self._path_seen:
             self._path_seen = seen
-            points = sample_path(_named(outputs), parameters=_named(self._controller.parameters))
-            update = scene.planned_path(t_ns, points)
+            points = sample_path(_values_by_name(outputs), parameters=_values_by_name(self._controller.parameters))
+            update = scene.path_update(t_ns, points)
             self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
 
 
@@ -225,7 +225,7 @@ def add_channel(file: Sink, topic: str, message: str, variables: list[Variable],
     return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
 
 
-def _drawn(vehicle: Slave) -> list[tuple[Ports, int] | None]:
+def _frame_ports(vehicle: Slave) -> list[tuple[Ports, int] | None]:
     """Return where pose, odometry and angle of the front wheels are, which frames are made of; empty without a pose.
 
     They may be outputs, or told under the vehicle's name. Odometry that there is not is the pose.
@@ -241,7 +241,7 @@ def _drawn(vehicle: Slave) -> list[tuple[Ports, int] | None]:
     return [*poses, *(found(f"odometry.{axis}", f"pose.{axis}") for axis in AXES), found("front_wheel_angle")]
 
 
-def _named(ports: Ports) -> dict[str, float]:
+def _values_by_name(ports: Ports) -> dict[str, float]:
     return dict(zip(ports.names, ports.values.tolist(), strict=True))
 
 

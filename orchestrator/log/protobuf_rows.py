@@ -67,14 +67,14 @@ class Encoder:
 
     def _field(self, number: int, content: Any, start: int) -> bytes:
         if isinstance(content, dict):
-            return self._nested(number, content, start)
+            return self._submessage(number, content, start)
         if not isinstance(content, list):
             tag = _varint(number << 3 | WIRE_TYPES[self._kinds[content]])
             return tag + self._scalar(content, start + len(tag))
         if isinstance(content[0], dict):
             parts = b""
             for item in content:
-                parts += self._nested(number, item, start + len(parts))
+                parts += self._submessage(number, item, start + len(parts))
             return parts
         size = sum(WIDTHS[self._kinds[item]] for item in content)
         head = _varint(number << 3 | LENGTH) + _varint(size)
@@ -83,7 +83,7 @@ class Encoder:
             body += self._scalar(item, start + len(head) + len(body))
         return head + body
 
-    def _nested(self, number: int, fields: dict[str, Any], start: int) -> bytes:
+    def _submessage(self, number: int, fields: dict[str, Any], start: int) -> bytes:
         noted = len(self._offsets)
         size = len(self._message(fields, 0))
         del self._offsets[noted:]

@@ -29,11 +29,11 @@ from orchestrator.log.records import (
     RawRecord,
     RecordHead,
     check,
-    parsed,
+    iterate_chunks,
+    parse_record,
     read_record,
     record_head,
     record_heads,
-    unpacked_chunks,
 )
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
@@ -97,9 +97,9 @@ def scan_log(path: Path, handler_of: Callable[[Any], Handler | None]) -> dict[st
     try:
         with LogFile(path) as data:
             sure = check(data)
-            for piece in unpacked_chunks(data):
+            for piece in iterate_chunks(data):
                 if piece.opcode == Opcode.METADATA:
-                    record = parsed(Metadata, piece)
+                    record = parse_record(Metadata, piece)
                     metadata[record.name] = record.metadata
                 elif piece.opcode == Opcode.CHUNK:
                     channels.take(piece.at, piece.body)
@@ -130,7 +130,7 @@ class _Channels:
             head = record_head(content[at : at + HEAD.size], place, len(content) - at)
             size = HEAD.size + head.size
             if head.opcode == Opcode.CHANNEL:
-                channel = parsed(Channel, RawRecord(place, head.opcode, content[at + HEAD.size : at + size]))
+                channel = parse_record(Channel, RawRecord(place, head.opcode, content[at + HEAD.size : at + size]))
                 if channel.id not in self._handlers:
                     self._handlers[channel.id] = self._handler_of(channel)
             elif head.opcode == Opcode.MESSAGE:
@@ -186,7 +186,7 @@ def read_info(path: Path) -> dict[str, Any]:
 
 
 def _metadata(data: LogFile, head: RecordHead) -> Any:
-    return parsed(Metadata, read_record(data, head)) if head.opcode == Opcode.METADATA else None
+    return parse_record(Metadata, read_record(data, head)) if head.opcode == Opcode.METADATA else None
 
 
 class _Owner:
@@ -204,7 +204,7 @@ class _Owner:
         self.rows.append(rows)
         self.count += len(times)
 
-    def taken(self, count: int) -> tuple[NDArray[np.int64], Array]:
+    def take(self, count: int) -> tuple[NDArray[np.int64], Array]:
         """Return the first ``count`` rows with their times, and forget them."""
         times = self.times[0] if len(self.times) == 1 else np.concatenate(self.times)
         rows = self.rows[0] if len(self.rows) == 1 else np.concatenate(self.rows)
@@ -264,7 +264,7 @@ class _SignalReader:
         count = min((item.count for item in self._owners.values()), default=0)
         if not count:
             return
-        parts = [item.taken(count) for item in self._owners.values()]
+        parts = [item.take(count) for item in self._owners.values()]
         times = parts[0][0]
         if any((other != times).any() for other, _ in parts[1:]):
             raise self._apart()
@@ -284,7 +284,7 @@ class _SignalReader:
         if any(item.count for item in self._owners.values()):
             raise self._apart()
         info = {name: without_checksum(name, values) for name, values in metadata.items()}
-        told = _told({**info.pop("apa", {}), **info})
+        told = _run_info({**info.pop("apa", {}), **info})
         return recording_of(self._blocks or SignalBlocks([]), self._parameters, self._variables, told)
 
 
@@ -300,7 +300,7 @@ class Told(BaseModel):
     realtime: Lateness | None = None
 
 
-def _told(info: dict[str, Any]) -> dict[str, Any]:
+def _run_info(info: dict[str, Any]) -> dict[str, Any]:
     """Return what a log tells of its run. Raises ``ValidationError`` if it is not of the kind that apa writes."""
     Told(**info)
     return info

@@ -129,13 +129,13 @@ def check(data: ByteSource) -> bool:
             end = head
     if end is None:
         raise Damage(last, "there is no end of the data")
-    (crc,) = _unpacked(struct.Struct("<I"), read_record(data, end))
+    (crc,) = _unpack(struct.Struct("<I"), read_record(data, end))
     if crc and crc != _crc(data, 0, end.at):
         raise Damage(_first_wrong(data, end.at), "the checksum of the data is wrong")
     return _check_summary(data, footer, end) and bool(crc)
 
 
-def unpacked_records(data: ByteSource) -> Iterator[RawRecord]:
+def iterate_records(data: ByteSource) -> Iterator[RawRecord]:
     """Yield the records of a whole file up to the end of the data, one chunk unpacked at a time. Raises ``Damage``.
 
     The indexes of messages are left out.
@@ -152,7 +152,7 @@ def unpacked_records(data: ByteSource) -> Iterator[RawRecord]:
             yield read_record(data, head)
 
 
-def unpacked_chunks(data: ByteSource) -> Iterator[RawRecord]:
+def iterate_chunks(data: ByteSource) -> Iterator[RawRecord]:
     """Yield the records of a whole file up to the end of the data; of a chunk the body is what it unpacks to."""
     budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
     for head in record_heads(data):
@@ -220,12 +220,12 @@ def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[Raw
 
 def chunk_times(piece: RawRecord) -> tuple[int, int]:
     """Return first and last time [ns] that a chunk says of itself."""
-    first, last, *_ = _unpacked(CHUNK, piece)
+    first, last, *_ = _unpack(CHUNK, piece)
     return int(first), int(last)
 
 
 def _chunk_bytes(piece: RawRecord, budget: int) -> bytes:
-    _, _, size, crc, letters = _unpacked(CHUNK, piece)
+    _, _, size, crc, letters = _unpack(CHUNK, piece)
     at = CHUNK.size + letters
     if letters > 16 or at + 8 > len(piece.body):
         raise Damage(piece.at, "a chunk has no compression that is known")
@@ -235,13 +235,13 @@ def _chunk_bytes(piece: RawRecord, budget: int) -> bytes:
         raise Damage(piece.at, "a chunk has another length than it says")
     if size > min(budget, MAX_CHUNK_BYTES):
         raise Damage(piece.at, f"a chunk says it unpacks to {size} bytes, more than a log may have")
-    data = _decompressed(piece.at, compression, packed, size)
+    data = _decompress(piece.at, compression, packed, size)
     if len(data) != size or (crc and zlib.crc32(data) != crc):
         raise Damage(piece.at, "the checksum of a chunk is wrong")
     return data
 
 
-def _decompressed(at: int, compression: bytes, packed: bytes, size: int) -> bytes:
+def _decompress(at: int, compression: bytes, packed: bytes, size: int) -> bytes:
     """Return what is packed, of which there are to be ``size`` bytes."""
     if not compression:
         return packed
@@ -262,7 +262,7 @@ def _check_summary(data: ByteSource, footer: RecordHead | None, end: RecordHead)
     """Return whether the summary behind ``end`` has a checksum; raise ``Damage`` if it is wrong."""
     if footer is None or footer.opcode != Opcode.FOOTER:
         raise Damage(end.end, "there is no footer")
-    start, _, crc = _unpacked(FOOTER, read_record(data, footer))
+    start, _, crc = _unpack(FOOTER, read_record(data, footer))
     if start not in (0, end.end):
         raise Damage(footer.at, "the footer tells another place of the summary")
     if crc and crc != _crc(data, end.end, footer.at + HEAD.size + FOOTER.size - 4):
@@ -281,13 +281,13 @@ def _first_wrong(data: ByteSource, end: int) -> int:
     return len(MCAP0_MAGIC)
 
 
-def _unpacked(layout: struct.Struct, piece: RawRecord) -> Any:
+def _unpack(layout: struct.Struct, piece: RawRecord) -> Any:
     if len(piece.body) < layout.size:
         raise Damage(piece.at, "a record is too short")
     return layout.unpack_from(piece.body)
 
 
-def parsed(record: Any, piece: RawRecord) -> Any:
+def parse_record(record: Any, piece: RawRecord) -> Any:
     """Return a record as a class of the package ``mcap`` has it. Raises ``Damage``."""
     import io
 

@@ -21,10 +21,10 @@ from orchestrator.log.records import (
     check,
     chunk_records,
     chunk_times,
-    parsed,
+    iterate_records,
+    parse_record,
     read_record,
     record_head,
-    unpacked_records,
 )
 from orchestrator.text.errors import BadInput
 
@@ -75,7 +75,7 @@ def _messages(data: ByteSource) -> tuple[int, int]:
     """Return how many messages a whole log has, and the time of the last [ns]. Raises ``Damage``."""
     check(data)
     count = last_ns = 0
-    for item in unpacked_records(data):
+    for item in iterate_records(data):
         if item.opcode == Opcode.MESSAGE and len(item.body) >= MESSAGE.size:
             count, last_ns = count + 1, max(last_ns, MESSAGE.unpack_from(item.body)[2])
     return count, last_ns
@@ -91,7 +91,7 @@ def _free(path: Path) -> Path:
     raise BadInput("has been recovered a thousand times; remove some", file=path)
 
 
-def salvaged(data: ByteSource) -> Iterator[RawRecord | Damage]:
+def recover_records(data: ByteSource) -> Iterator[RawRecord | Damage]:
     """Yield the records that are whole, and each damage, in the order of the file."""
     at, end = len(MCAP0_MAGIC), len(data)
     while at < end:
@@ -103,7 +103,7 @@ def salvaged(data: ByteSource) -> Iterator[RawRecord | Damage]:
                 return
             after = head.end
             try:
-                yield from _opened(read_record(data, head))
+                yield from _open_record(read_record(data, head))
             except Damage as damage:
                 yield damage
                 after = after if _begins_record(data, after) else _next_chunk(data, at + 1)
@@ -115,7 +115,7 @@ def salvaged(data: ByteSource) -> Iterator[RawRecord | Damage]:
             at = _next_chunk(data, at + 1)
 
 
-def _opened(piece: RawRecord) -> list[RawRecord]:
+def _open_record(piece: RawRecord) -> list[RawRecord]:
     """Return a record, or those in it if it is a chunk: all or, with ``Damage``, none."""
     if piece.opcode != Opcode.CHUNK:
         return [piece]
@@ -159,7 +159,7 @@ class _Copier:
 
     def copy(self, data: ByteSource) -> None:
         """Copy ``data``, noting what is lost."""
-        for item in salvaged(data):
+        for item in recover_records(data):
             try:
                 if isinstance(item, Damage):
                     raise item
@@ -186,11 +186,11 @@ class _Copier:
     def _one(self, piece: RawRecord) -> None:
         writer = self._writer
         if piece.opcode == Opcode.SCHEMA:
-            record = parsed(Schema, piece)
+            record = parse_record(Schema, piece)
             if record.id not in self._schemas:
                 self._schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
         elif piece.opcode == Opcode.CHANNEL:
-            record = parsed(Channel, piece)
+            record = parse_record(Channel, piece)
             if record.id not in self._channels:
                 schema = self._schemas[record.schema_id]
                 number = writer.register_channel(record.topic, record.message_encoding, schema, record.metadata)
@@ -201,12 +201,12 @@ class _Copier:
             self.messages += 1
             self.last_ns = max(self.last_ns, time)
         elif piece.opcode == Opcode.METADATA:
-            record = parsed(Metadata, piece)
+            record = parse_record(Metadata, piece)
             if record.name != RECOVERED:
                 _check_metadata(piece, record)
                 writer.add_metadata(record.name, record.metadata)
         elif piece.opcode == Opcode.ATTACHMENT:
-            record = parsed(Attachment, piece)
+            record = parse_record(Attachment, piece)
             writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
 
 

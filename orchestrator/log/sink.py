@@ -14,7 +14,7 @@ class Sink(Protocol):
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Take what is said of the whole run."""
 
-    def known_channel(self, topic: str, message: type[Any]) -> int:
+    def add_channel(self, topic: str, message: type[Any]) -> int:
         """Return a new channel for a generated protobuf message class."""
 
     def channel(self, topic: str, schema: str, descriptors: bytes, metadata: dict[str, str]) -> int:

@@ -36,7 +36,7 @@ from orchestrator.papers.result import (
     yes_row,
 )
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.slot_sizes import shipped_slot_sizes
+from orchestrator.scenario.slot_sizes import library_slot_sizes
 
 TITLE = "APA: from looking for a slot to parked (ADAS algorithm design 8)"
 SCENARIOS = ("apa-parallel", "apa-perpendicular", "apa-parallel-tight", "apa-takeover")
@@ -111,7 +111,7 @@ def _length_rows(name: str) -> list[Row]:
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
     by_search = shortest_by_search(car, width)
-    sizes = SlotSizes(**shipped_slot_sizes("iso16787"))
+    sizes = SlotSizes(**library_slot_sizes("iso16787"))
     iso = shortest_slot(Kind.PARALLEL, Car(wheelbase=car.front, front_overhang=0.0, rear_overhang=car.rear), sizes)
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [

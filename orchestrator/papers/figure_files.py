@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fmus.files import write_whole
-from orchestrator.drawing.run_figure import check_figure, save_figure, styled
+from orchestrator.drawing.run_figure import check_figure, save_figure, style_context
 from orchestrator.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.papers.result import Drive
 from orchestrator.text.errors import BadInput
@@ -28,7 +28,7 @@ def write_figures(paper: str, drive: Drive, folder: Path, dpi: int = 150) -> lis
         if item.draw is None:
             continue
         runs = [drive(name) for name in item.scenarios]
-        with styled():
+        with style_context():
             figure = item.draw(runs)
         for suffix in FORMATS:
             path = folder / f"{item.name}{suffix}"

@@ -61,7 +61,7 @@ def obeying_rows(run: str) -> list[Row]:
 def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...], sets: tuple[str, ...] = ()) -> Obeyed:
     """Return what becomes of drivers of all these speeds [m/s] and reactions [s], with further ``sets``."""
     drivers = [
-        LabelledScenario({"speed": speed, "reaction": reaction}, _driven(run, speed, reaction, sets))
+        LabelledScenario({"speed": speed, "reaction": reaction}, _driver_scenario(run, speed, reaction, sets))
         for speed, reaction in itertools.product(speeds, reactions)
     ]
     scenario, design = design_of(drivers)
@@ -75,6 +75,6 @@ def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...], sets
     return Obeyed(len(drivers), *(int(np.sum(item)) for item in counted))
 
 
-def _driven(run: str, speed: float, reaction: float, sets: tuple[str, ...]) -> Scenario:
+def _driver_scenario(run: str, speed: float, reaction: float, sets: tuple[str, ...]) -> Scenario:
     driver = (f"vehicle.driver.profile[1].speed={speed}", f"vehicle.driver.reaction_delay={reaction}")
     return load_scenario(run, (*driver, *sets, "controller.guo2015.prompting.reaction=0.3"))

@@ -34,7 +34,7 @@ def draw_case(case: int, runs: list[Driven], file: Path) -> Path:
     for colour, driven in zip(COLOURS, runs, strict=False):
         _lines(axes, driven, colour)
     _path(axes[1, 1], runs[0])
-    _printed(axes, PRINTED.get(case, []))
+    _plot_published_points(axes, PRINTED.get(case, []))
     labels = ("(a) speed and steering wheel", "(b) position", "(c) heading", "(d) path")
     for axis, label in zip(axes.flat, labels, strict=True):
         axis.set_title(label, loc="left", fontsize=10)
@@ -79,7 +79,7 @@ def _path(axis: Any, driven: Driven) -> None:
     axis.plot(second, 2.44 - np.sqrt(30.25 - (second + 7.61) ** 2), color="#888888", linewidth=1.0, linestyle=":")
 
 
-def _printed(axes: Any, points: list[tuple[float, float, float, float]]) -> None:
+def _plot_published_points(axes: Any, points: list[tuple[float, float, float, float]]) -> None:
     _, position, heading, path = axes.flat
     style = {"linestyle": "none", "marker": "x", "color": "#222222", "markersize": 6, "zorder": 5}
     for t, x, y, angle in points:

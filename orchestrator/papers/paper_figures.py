@@ -22,8 +22,8 @@ from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.road import road_at, road_length
 from modelkit.vocabulary import Pose
-from orchestrator.drawing.run_figure import LINES, PATH, run_figure, styled
-from orchestrator.drawing.seen import planned_paths
+from orchestrator.drawing.run_figure import LINES, PATH, run_figure, style_context
+from orchestrator.drawing.seen import path_plans
 from orchestrator.papers.result import Driven
 
 Draw = Callable[[list[Driven]], Figure]
@@ -53,7 +53,7 @@ class PaperFigure(NamedTuple):
 
 def grid_of(rows: int, columns: int, width: float = 6.7, height: float = 2.2) -> tuple[Figure, list[Any]]:
     """Return a figure of panels, and the panels."""
-    with styled():
+    with style_context():
         figure = Figure(figsize=(width, rows * height), layout="constrained")
         axes = [figure.add_subplot(rows, columns, place) for place in range(1, rows * columns + 1)]
     for axis in axes:
@@ -218,7 +218,7 @@ def rule_surfaces(_: list[Driven]) -> Figure:
     """Return Fig. 6: both outputs over their two inputs."""
     p = PreviewParams()
     sides = np.linspace(-1.0, 1.0, 25)
-    with styled():
+    with style_context():
         figure = Figure(figsize=(6.7, 3.2), layout="constrained")
     a, b = np.meshgrid(sides, sides)
     angles = [
@@ -292,7 +292,7 @@ def hsic_panels(runs: list[Driven]) -> Figure:
     on = np.where(signals["controller.hsic.stage"] == 2, 1.0, np.nan)
     tangent.plot(t, 100.0 * on * signals["controller.hsic.tangent_error"], color="#000000", label="off the tangent")
     path.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], color="#bbbbbb", linewidth=2.5, label="rear axle")
-    path.plot(*planned_paths(runs[0].recording)[-1].T, label="planned path", **(TARGET | {"color": "#000000"}))
+    path.plot(*path_plans(runs[0].recording)[-1].T, label="planned path", **(TARGET | {"color": "#000000"}))
     steering.set(xlabel="t [s]\n(a)", ylabel="front wheel [deg]", xlim=(0.0, t[-1]))
     heading.set(xlabel="t [s]\n(b)", ylabel="heading [deg]", xlim=(0.0, t[-1]))
     tangent.set(xlabel="t [s]\n(c)", ylabel="off the tangent [cm]", xlim=(0.0, t[-1]))

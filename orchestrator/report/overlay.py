@@ -7,7 +7,7 @@ from typing import Any
 from fmus.files import write_whole
 from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.decimation import decimated
+from orchestrator.drawing.decimation import decimate
 from orchestrator.drawing.palette import RUNS
 from orchestrator.log.line import Line
 from orchestrator.report.page import page
@@ -40,7 +40,7 @@ def write_overlay(
     if len(runs) > len(RUNS):
         raise BadInput(f"{len(runs)} runs on one page; there is room for {len(RUNS)}")
     text = ""
-    shown = [decimated(run, _moments(found)) for run in runs]
+    shown = [decimate(run, _moments(found)) for run in runs]
     for most in MOST_ROWS:
         text = _page(shown, runs, words, found, most, names)
         if len(text.encode()) < LARGEST_PAGE:

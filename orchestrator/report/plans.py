@@ -35,7 +35,7 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point, most: int = MO
         plan: dict[str, Any] = {"t": float(recording.t[row])}
         points = sample_path(values, parameters=parameters) - origin
         plan["x"], plan["y"] = arrays.add(points[:, 0]), arrays.add(points[:, 1])
-        slot, target = found_slot(values), wanted_pose(values)
+        slot, target = slot_corners(values), target_pose(values)
         if slot is not None:
             plan["slot"] = np.round(slot - origin, 4).tolist()
         if target is not None:
@@ -53,7 +53,7 @@ def _fewer(changes: Indices, t: Array, most: int) -> list[int]:
     return [int(row) for row in changes[is_last]]
 
 
-def found_slot(values: Mapping[str, float]) -> Array | None:
+def slot_corners(values: Mapping[str, float]) -> Array | None:
     """Return the corners (4, 2) [m] of the slot a parking assist has chosen; None if it has none.
 
     Corner A is the edge passed first, x runs along the road to corner B, the slot lies to the right
@@ -68,6 +68,6 @@ def found_slot(values: Mapping[str, float]) -> Array | None:
     return place(corners, *pose_at(values, "apa.slot.a"))
 
 
-def wanted_pose(values: Mapping[str, float]) -> tuple[float, float, float] | None:
+def target_pose(values: Mapping[str, float]) -> tuple[float, float, float] | None:
     """Return the pose a parking assist wants to park at; None if it has no slot."""
     return pose_at(values, "apa.target") if values.get("apa.slot.kind", 0.0) > 0.0 else None

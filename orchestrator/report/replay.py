@@ -7,7 +7,7 @@ from typing import Any
 
 from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.decimation import decimated
+from orchestrator.drawing.decimation import decimate
 from orchestrator.log.line import Line
 from orchestrator.report.charts import charts_of
 from orchestrator.report.page import page
@@ -44,7 +44,7 @@ def replay_page(recording: Recording, summary: Summary, words: list[Line], live:
     if not recording.count:
         raise BadInput("the run has no instant to show")
     text = ""
-    shown = decimated(recording, [check.t for check in summary.checks])
+    shown = decimate(recording, [check.t for check in summary.checks])
     whole = recording if shown is not recording else None
     for most in MOST_ROWS:
         text = _page(shown, summary, words, most, live, whole)

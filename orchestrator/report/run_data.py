@@ -40,9 +40,9 @@ def run_data(
     ``whole``: the long recording of which ``recording`` has some instants only.
     """
     t = recording.t
-    curves = [name for name in recording.signals if not _held(recording.variables[name])]
+    curves = [name for name in recording.signals if not _is_held(recording.variables[name])]
     lines = [recording.signals[name] for name in curves]
-    steps = [values for name, values in recording.signals.items() if _held(recording.variables[name])]
+    steps = [values for name, values in recording.signals.items() if _is_held(recording.variables[name])]
     steps = [values for values in steps if whole is None or (values[1:] != values[:-1]).sum() <= MAX_STEP_ROWS // 2]
     rows = [int(np.clip(np.searchsorted(t, moment), 0, len(t) - 1)) for moment in keep]
     thinned = thin(t, lines, steps, rows, most)
@@ -78,14 +78,14 @@ def _changes(recording: Recording, name: str) -> bool:
     return values is not None and bool((values != values[:1]).any())
 
 
-def _held(variable: Variable) -> bool:
+def _is_held(variable: Variable) -> bool:
     return variable.kind is not float
 
 
 def _signal(recording: Recording, name: str, rows: np.ndarray[Any, Any], arrays: Arrays) -> dict[str, Any]:
     variable, values = recording.variables[name], recording.signals[name]
     result: dict[str, Any] = {"unit": variable.signal.unit, "text": variable.signal.text}
-    if _held(variable):
+    if _is_held(variable):
         result["held"] = True
     if variable.signal.unit == "rad" and name.endswith("heading"):
         result["turn"] = True

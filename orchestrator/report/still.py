@@ -8,8 +8,8 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.geometry import Box, CarOutline, boxes, described, kerbs, slot_box
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box, vehicle_parameters
+from orchestrator.verdict.logged import read_logged_run
 
 Point = tuple[float, float]
 MOUNT = re.compile(r"(?:car\.)?(\w+)\.mounts\[(\d+)\]\.x")
@@ -24,8 +24,8 @@ def origin_of(recording: Recording) -> Point:
 
 def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
     """Return the drawing of a run's surroundings for ``template/scene.js``, positions less ``origin`` [m]."""
-    scenario, vehicle = logged(recording).scenario, recording.parameters_of("vehicle")
-    slot, target, around = scenario.slot, scenario.target, described(scenario, vehicle)
+    scenario, vehicle = read_logged_run(recording).scenario, recording.parameters_of("vehicle")
+    slot, target, around = scenario.slot, scenario.target, vehicle_parameters(scenario, vehicle)
     car = CarOutline.of(around)
     return {
         "origin": list(origin),

@@ -34,7 +34,7 @@ def thin(t: Array, lines: list[Array], steps: list[Array], keep: list[int], most
         changes = np.flatnonzero(values[1:] != values[:-1])
         kept[changes] = True
         kept[changes + 1] = True
-    scaled = [line for line in (_scaled(values) for values in lines) if line is not None]
+    scaled = [line for line in (_scale(values) for values in lines) if line is not None]
     for values in scaled:
         kept[[int(np.argmin(values)), int(np.argmax(values))]] = True
     error = _error(t, scaled, kept)
@@ -47,7 +47,7 @@ def thin(t: Array, lines: list[Array], steps: list[Array], keep: list[int], most
     return Thinned(np.flatnonzero(kept), float(error.max(initial=0.0)))
 
 
-def _scaled(values: Array) -> Array | None:
+def _scale(values: Array) -> Array | None:
     """Return the signal over its range, not-a-numbers as zero; None for a constant."""
     finite = np.where(np.isfinite(values), values, 0.0)
     span = float(finite.max() - finite.min())

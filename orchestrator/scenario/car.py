@@ -15,7 +15,7 @@ from modelkit.variables import flatten, variables
 from orchestrator.scenario.commonroad import commonroad_car, is_commonroad
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.flat_names import FlatLayer, flatten_layer, merge_flat
-from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
+from orchestrator.text.errors import BadInput, format_value, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import read_mapping
 
@@ -26,7 +26,7 @@ Layer = tuple[dict[str, Any], object]
 """What one file says, and the file."""
 
 
-class ToldCar(NamedTuple):
+class VehicleDefinition(NamedTuple):
     """What a scenario says of its car."""
 
     name: str | None
@@ -42,17 +42,17 @@ class ToldCar(NamedTuple):
         return [*(self.plant if owner == "vehicle" else ()), both]
 
 
-def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> ToldCar:
+def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> VehicleDefinition:
     """Return the car after all layers of a scenario, each (what it says of the car, its file), lowest first.
 
     A relative path is beside the file that says it; on the command line it is here, else in ``folder``.
     """
-    car = ToldCar(None, {})
+    car = VehicleDefinition(None, {})
     for given, file in said:
         if given is None:
             continue
         if not isinstance(given, str | Mapping):
-            text = f"{shown(given)}: expected the name of a car, a file, or a mapping of what is different"
+            text = f"{format_value(given)}: expected the name of a car, a file, or a mapping of what is different"
             raise BadInput(text, file=file, key="car")
         changes = {BASE: given} if isinstance(given, str) else dict(given)
         base = changes.pop(BASE, None)
@@ -60,7 +60,9 @@ def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> ToldC
             is_here = isinstance(base, str) and Path(base).is_file()
             beside = file.parent if isinstance(file, Path) else Path() if is_here else folder
             if not isinstance(base, str):
-                raise BadInput(f"{shown(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}")
+                raise BadInput(
+                    f"{format_value(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}"
+                )
             car = _car_in(find_file(base, "cars", "car", beside), base)
         new = _numbers(changes, file)
         car = car._replace(told=merge_flat(car.told, new.values, new.arrays))
@@ -79,7 +81,7 @@ def car_parameters(car: Car) -> dict[str, Any]:
     return {f"car.{item.name}": value for item, value in zip(CAR, flatten(car), strict=True)}
 
 
-def _car_in(file: Path, name: str) -> ToldCar:
+def _car_in(file: Path, name: str) -> VehicleDefinition:
     content = read_mapping(file)
     if is_commonroad(content):
         content = commonroad_car(content, file)
@@ -88,13 +90,13 @@ def _car_in(file: Path, name: str) -> ToldCar:
             hint = suggestion_or_choices(str(key), FILE_KEYS)
             raise BadInput(f"unknown{hint}", file=file, key=key)
     vehicle: Layer = ({"vehicle": content.get("vehicle")}, file)
-    return ToldCar(name, _numbers(content.get("car") or {}, file).values, (vehicle,))
+    return VehicleDefinition(name, _numbers(content.get("car") or {}, file).values, (vehicle,))
 
 
 def _numbers(section: object, file: object) -> FlatLayer:
     """Return what is written of a car, in SI units."""
     if not isinstance(section, Mapping):
-        raise BadInput(f"{shown(section)}: expected a mapping of parameters", file=file, key="car")
+        raise BadInput(f"{format_value(section)}: expected a mapping of parameters", file=file, key="car")
     known = {item.name: item._replace(name=f"car.{item.name}") for item in CAR}
     flat = flatten_layer(section, known, file=file, key="car")
     return flat._replace(values={name: scalar(value, known[name], file=file) for name, value in flat.values.items()})

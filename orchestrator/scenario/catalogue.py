@@ -48,7 +48,7 @@ def entries(*roles: str) -> list[Entry]:
     for owner, model in MODELS.items():
         groups = {"parameter": model.params, "input": model.inputs, "output": model.outputs}
         for role in roles:
-            found += [Entry(owner, role, item, count) for item, count in collapsed(variables(groups[role]))]
+            found += [Entry(owner, role, item, count) for item, count in collapse_arrays(variables(groups[role]))]
     return found + _apart(roles, {(item.role, item.name) for item in found})
 
 
@@ -59,11 +59,11 @@ def _apart(roles: tuple[str, ...], known: set[tuple[str, str]]) -> list[Entry]:
         groups = {"parameter": model.params, "input": model.inputs, "output": model.outputs}
         for role in roles:
             items = [item for item in variables(groups[role]) if (role, f"controller.{item.name}") not in known]
-            found += [Entry("controller", role, item, count) for item, count in collapsed(items)]
+            found += [Entry("controller", role, item, count) for item, count in collapse_arrays(items)]
     return found
 
 
-def chosen(found: list[Entry], word: str | None) -> list[Entry]:
+def match_entries(found: list[Entry], word: str | None) -> list[Entry]:
     """Return the entries whose name fits the pattern ``word``; a plain word fits anywhere in name or meaning."""
     if word is None:
         return found
@@ -81,7 +81,7 @@ def systems() -> dict[str, str]:
     return {item.name.lower(): texts.get(item.name, "") for item in known}
 
 
-def collapsed(items: list[Variable]) -> Iterator[tuple[Variable, int]]:
+def collapse_arrays(items: list[Variable]) -> Iterator[tuple[Variable, int]]:
     """Return variables and how many array elements each stands for: those of element 1 stand for all alike."""
     counts: dict[str, int] = {}
     for item in items:

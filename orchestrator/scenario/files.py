@@ -16,14 +16,14 @@ ADVICE = {
 """Suffix of a file that is no scenario -> the command that takes it."""
 
 
-def shipped(folder: str) -> list[str]:
+def library_names(folder: str) -> list[str]:
     """Return the names of the shipped files in ``folder``, sorted."""
     return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
 
 
 def car_names() -> list[str]:
     """Return the names of the shipped cars, sorted."""
-    return shipped("cars")
+    return library_names("cars")
 
 
 def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
@@ -42,6 +42,6 @@ def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
             f"expected a {what}: a file .yaml or .ssp, or a name of `apa list {folder}`{ADVICE.get(suffix, '')}",
             file=name,
         )
-    known = shipped(folder)
+    known = library_names(folder)
     hint = suggestion_or_choices(name, known, listing=f"apa list {folder}")
     raise BadInput(f"no {what} of this name{hint}", key=name)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, format_value, suggestion
 
 
 def flatten_section(
@@ -82,7 +82,7 @@ def _flatten(name: str, value: object, found: _Found) -> None:
     else:
         parts = ", ".join(child.removeprefix(name).lstrip(".") for child in children[:6])
         raise BadInput(
-            f"{shown(value)} is one value, expected a mapping or list of {parts}", file=file, key=f"{key}.{name}"
+            f"{format_value(value)} is one value, expected a mapping or list of {parts}", file=file, key=f"{key}.{name}"
         )
 
 

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.car import CAR, Layer, vehicle_definition, with_said
-from orchestrator.scenario.files import find_file, shipped
+from orchestrator.scenario.files import find_file, library_names
 from orchestrator.scenario.flat_names import flatten_layer, flatten_section, merge_flat, merge_nested
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.obstacle_map import map_of
@@ -19,7 +19,7 @@ from orchestrator.scenario.slot_layout import KEY, expand_layouts, layout_of
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
-from orchestrator.text.errors import BadInput, shown, suggestion, suggestion_or_choices
+from orchestrator.text.errors import BadInput, format_value, suggestion, suggestion_or_choices
 from orchestrator.text.quantities import text_or_scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
@@ -45,7 +45,7 @@ class _Given(NamedTuple):
 
 def scenario_names() -> list[str]:
     """Return the names of the shipped scenarios, sorted."""
-    return shipped("scenarios")
+    return library_names("scenarios")
 
 
 def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None) -> Scenario:
@@ -63,18 +63,18 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged["car"] = car.name
     merged["requirements"] = requirements_of(merged.get("requirements", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
-    for owner, model in models_for(_requested_system(layers)).items():
+    for owner, model in models_for(_system_request(layers)).items():
         given = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
         merged[owner] = {key: value for key, value in given.items() if not isinstance(value, str)}
         texts = {key: value for key, value in given.items() if isinstance(value, str)}
         merged |= {"texts": {**merged.get("texts", {}), owner: texts}} if texts else {}
     overrides = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
-        merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _written_in("target", layers, path))
+        merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _source_of("target", layers, path))
         scenario = Scenario(**merged, file=str(path), overrides=overrides)
     except ValidationError as error:
-        raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
-    return _with_parameters(scenario, more).model_copy(update={"controller": _told(scenario)})
+        raise explain(error, _source_of(place_in(error), layers, path), FIELDS) from None
+    return _with_parameters(scenario, more).model_copy(update={"controller": _target_parameters(scenario)})
 
 
 def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
@@ -140,13 +140,13 @@ def _with_parameters(scenario: Scenario, more: More) -> Scenario:
     return scenario.model_copy(update={"system": scenario.system.model_copy(update={"components": entries})})
 
 
-def _written_in(key: str, layers: list[Layer], path: Path) -> object:
+def _source_of(key: str, layers: list[Layer], path: Path) -> object:
     """Return the file, or ``--set``, that has the last word about a key of the scenario."""
     top = key.partition(".")[0].partition("[")[0]
     return next((file for content, file in reversed(layers) if top in content), path)
 
 
-def _told(scenario: Scenario) -> dict[str, float | int | bool]:
+def _target_parameters(scenario: Scenario) -> dict[str, float | int | bool]:
     """Return the controller's parameters with the target it is told: the scenario's, unless they say another."""
     own = scenario.controller
     if scenario.target is None:
@@ -198,7 +198,7 @@ def _entry_beside(entry: object, folder: Path) -> object:
     return {**given, "file": str(folder / str(given["file"]))}
 
 
-def _requested_system(layers: list[Layer]) -> dict[str, object]:
+def _system_request(layers: list[Layer]) -> dict[str, object]:
     """Return what the topmost layer that says it asks for as ``controller.system``."""
     sections = [content.get("controller") for content, _ in layers]
     asked = [section["system"] for section in sections if isinstance(section, Mapping) and "system" in section]
@@ -216,7 +216,7 @@ def _parameters(
     for content, file in layers:
         section = content.get(owner) or {}
         if not isinstance(section, Mapping):
-            raise BadInput(f"{shown(section)}: expected a mapping of parameters", file=file, key=owner)
+            raise BadInput(f"{format_value(section)}: expected a mapping of parameters", file=file, key=owner)
         if owner == "vehicle" and content.get("scene") is not None:
             section = {"scene": content["scene"], **section}
         flat, arrays = flatten_layer(section, names, file=file, key=owner)
@@ -239,7 +239,7 @@ def _value(variable: Variable, given: object, owner: str) -> Parameter:
 def requirements_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
     """Return limits with the names of sets, or of files in ``folder``, replaced by their content."""
     if not isinstance(given, list):
-        raise BadInput(f"{shown(given)}: expected a list", file=file, key="requirements")
+        raise BadInput(f"{format_value(given)}: expected a list", file=file, key="requirements")
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
@@ -258,7 +258,7 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
     for text in sets:
         key, equals, value = text.partition("=")
         if not equals or not key:
-            raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example car.wheelbase=2.7", file="--set")
+            raise BadInput(f"{format_value(text)}: expected KEY=VALUE, for example car.wheelbase=2.7", file="--set")
         parsed = read_value(value, key)
         owner, dot, name = key.partition(".")
         if dot and owner in (*MODELS, "target", "slot", "scene", "decimation", KEY):

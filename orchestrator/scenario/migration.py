@@ -11,7 +11,7 @@ from typing import NamedTuple
 import yaml
 
 from orchestrator.text.errors import BadInput
-from orchestrator.text.renamed_names import SCENARIO_KEYS, VALUES, renamed
+from orchestrator.text.renamed_names import SCENARIO_KEYS, VALUES, current_name
 from orchestrator.text.yaml_file import read_yaml
 
 SECTIONS_OF_A_TEST = ("inputs", "parameters", "ranges")
@@ -134,9 +134,9 @@ def _key(key: yaml.Node, text: str, path: tuple[str, ...]) -> Iterator[_Edit]:
     for match in NAME.finditer(text, start, end):
         word = match[0]
         full = ".".join([*path, word])
-        new = renamed(full)
+        new = current_name(full)
         if new == full and "." in word:
-            full, new = word, renamed(word)
+            full, new = word, current_name(word)
         if new != full:
             own = new.split(".")[-(word.count(".") + 1) :]
             yield _Edit(match.start(), match.end(), key.start_mark.line + 1, ".".join(own))
@@ -155,7 +155,7 @@ def _value(key: str, value: yaml.ScalarNode, text: str) -> Iterator[_Edit]:
 def _names(value: yaml.ScalarNode, text: str, owner: str = "") -> Iterator[_Edit]:
     """Yield the edits of a value that is the name of a signal, a parameter or a metric."""
     word = str(value.value)
-    new = renamed(owner + word).removeprefix(owner)
+    new = current_name(owner + word).removeprefix(owner)
     raw = text[value.start_mark.index : value.end_mark.index]
     if new != word and word not in SCENARIO_KEYS and word in raw:
         at = value.start_mark.index + raw.index(word)

@@ -11,7 +11,7 @@ from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.obstacle_map import static_obstacles
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.errors import BadInput, format_value
 from orchestrator.text.quantities import number
 
 LARGEST: Mapping[str, float] = {
@@ -134,7 +134,8 @@ def _faults(scenario: Scenario) -> Iterator[str]:
             except BadInput:
                 continue
             if math.isfinite(size) and size > LARGEST.get(unit, math.inf):
-                yield f"faults[{place}].{key} = {shown(given)} is beyond what is plausible for a signal in {unit}"
+                fault_value = f"faults[{place}].{key} = {format_value(given)}"
+                yield f"{fault_value} is beyond what is plausible for a signal in {unit}"
 
 
 def _unit_of(signal: str) -> str:

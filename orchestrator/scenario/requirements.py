@@ -11,8 +11,8 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
-from orchestrator.text.quantities import Seconds, measured
+from orchestrator.text.errors import BadInput, format_value, suggestion_or_choices
+from orchestrator.text.quantities import Seconds, parse_quantity
 from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
@@ -29,7 +29,7 @@ class Limited(BaseModel):
     @property
     def condition(self) -> Condition:
         """Return which of the conditions is given."""
-        return _given(self.__dict__)
+        return _condition_of(self.__dict__)
 
     @property
     def limit(self) -> float | str:
@@ -60,8 +60,8 @@ class Occasion(Limited):
     @classmethod
     def _quantities(cls, data: Any) -> Any:
         if not isinstance(data, dict):
-            raise BadInput(f"{shown(data)}: expected a mapping with signal and one of {', '.join(CONDITIONS)}")
-        return {**data, **_limit(data, _given(data))}
+            raise BadInput(f"{format_value(data)}: expected a mapping with signal and one of {', '.join(CONDITIONS)}")
+        return {**data, **_limit(data, _condition_of(data))}
 
 
 class Window(BaseModel):
@@ -94,7 +94,7 @@ class Window(BaseModel):
         return data
 
     @model_validator(mode="after")
-    def _ordered(self) -> "Window":
+    def _check_order(self) -> "Window":
         if self.from_ is not None and self.to is not None and self.from_ > self.to:
             raise BadInput(f"from {self.from_:g} s is after to {self.to:g} s", key="window")
         if self.after is None and (self.delay or self.lasting is not None):
@@ -142,17 +142,17 @@ class Requirement(Limited):
     def _quantities(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             raise BadInput(
-                f"{shown(data)}: expected the name of a set of limits or a mapping with id, signal, max, source"
+                f"{format_value(data)}: expected the name of a set of limits or a mapping with id, signal, max, source"
             )
         for key in data:
             if key not in cls.model_fields:
                 hint = suggestion_or_choices(str(key), cls.model_fields)
                 raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
-        return {**data, **_limit(data, _given(data))}
+        return {**data, **_limit(data, _condition_of(data))}
 
 
 @cache
-def shipped_requirements(name: str, *ids: str) -> tuple[Requirement, ...]:
+def library_requirements(name: str, *ids: str) -> tuple[Requirement, ...]:
     """Return the shipped set of requirements of this name, or those called ``ids``. Raises ``KeyError``."""
     found = {item.id: item for item in read_requirements(REQUIREMENT_SETS / f"{name}.yaml")}
     return tuple(found[wanted] for wanted in ids or found)
@@ -174,7 +174,7 @@ def read_requirements(path: Path) -> list[Requirement]:
     return found
 
 
-def _given(data: Mapping[str, Any]) -> Condition:
+def _condition_of(data: Mapping[str, Any]) -> Condition:
     given = [key for key in CONDITIONS if data.get(key) is not None]
     if len(given) != 1:
         raise BadInput(f"expected exactly one of {', '.join(CONDITIONS)}", key=str(data.get("id", "")))
@@ -190,7 +190,7 @@ def _limit(data: dict[str, Any], key: str) -> dict[str, Any]:
     if key == "equals" and isinstance(value, str) and value.strip().replace("_", "").replace(" ", "").isalnum():
         if not value.strip()[0].isdigit():
             return {key: value.strip()}
-    number, written = measured(value, key=where)
+    number, written = parse_quantity(value, key=where)
     if unit is not None and written is not None and written != unit:
-        raise BadInput(f"{shown(value)} is not in {unit}", key=where)
+        raise BadInput(f"{format_value(value)} is not in {unit}", key=where)
     return {key: number, "unit": written if unit is None else unit}

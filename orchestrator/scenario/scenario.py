@@ -11,7 +11,7 @@ from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.pace import DEFAULTS, DURATION, UNLIMITED, stop_times
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.scenario.slot_layout import SlotLayout
 from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
@@ -133,7 +133,7 @@ class Scenario(_ScenarioPart):
     overrides: dict[str, str] = {}
     """Changes by ``--set``, as written on the command line."""
 
-    def given(self, slave: str) -> dict[str, Any]:
+    def parameters_for(self, slave: str) -> dict[str, Any]:
         """Return the parameters that are set in a component."""
         own = self.parameters_of(slave)
         return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.unsupported_parameters}
@@ -213,10 +213,10 @@ class Scenario(_ScenarioPart):
         return self
 
     @model_validator(mode="after")
-    def _parked(self) -> "Scenario":
+    def _add_parked_requirements(self) -> "Scenario":
         """Add the shipped set `parked`, except requirements on metrics that the scenario limits itself."""
         named = {limit.signal for limit in self.requirements}
-        missing = [item for item in shipped_requirements("parked") if item.signal not in named]
+        missing = [item for item in library_requirements("parked") if item.signal not in named]
         if missing:
             self.requirements = [*self.requirements, *missing]
         return self
@@ -238,7 +238,7 @@ class Scenario(_ScenarioPart):
     @property
     def contact_rule(self) -> Requirement:
         """Return the requirement that the vehicle has no contact; not required if the scenario allows contact."""
-        (rule,) = shipped_requirements(CONTACT_FREE)
+        (rule,) = library_requirements(CONTACT_FREE)
         if not self.contact_allowed:
             return rule
         return rule.model_copy(update={"required": False, "source": "allowed: contact_allowed of the scenario"})

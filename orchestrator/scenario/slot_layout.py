@@ -152,7 +152,7 @@ def layout_of(layers: Iterable[tuple[dict[str, Any], object]]) -> SlotLayout | N
         if not isinstance(given, Mapping):
             raise BadInput("expected a mapping of kind, length, depth, ...", file=file, key=KEY)
         for name, value in given.items():
-            merged = merge_nested(merged, _nested(str(name), value))
+            merged = merge_nested(merged, _nest(str(name), value))
         last = file
     if last is None:
         return None
@@ -167,10 +167,10 @@ def layout_of(layers: Iterable[tuple[dict[str, Any], object]]) -> SlotLayout | N
         raise BadInput(f"{wrong}", file=last, key=KEY) from None
 
 
-def _nested(name: str, value: object) -> dict[str, Any]:
+def _nest(name: str, value: object) -> dict[str, Any]:
     """Return ``{"origin": {"x": value}}`` for ``origin.x``."""
     first, dot, rest = name.partition(".")
-    return {first: _nested(rest, value) if dot else value}
+    return {first: _nest(rest, value) if dot else value}
 
 
 def scene_of(layout: SlotLayout) -> dict[str, Any]:

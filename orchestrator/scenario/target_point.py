@@ -11,7 +11,7 @@ from typing import Any
 from modelkit.car import Car
 from modelkit.variables import with_values
 from orchestrator.scenario.scenario import Target
-from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.errors import BadInput, format_value
 
 REFERENCE_POINT = "reference_point"
 POINTS = ("rear_axle", "front", "rear", "left", "right", "middle")
@@ -25,7 +25,7 @@ def as_rear_axle(target: object, vehicle: Mapping[str, Any], file: object) -> ob
     point = target[REFERENCE_POINT]
     if point not in POINTS:
         raise BadInput(
-            f"{shown(point)}: expected one of {', '.join(POINTS)}", file=file, key=f"target.{REFERENCE_POINT}"
+            f"{format_value(point)}: expected one of {', '.join(POINTS)}", file=file, key=f"target.{REFERENCE_POINT}"
         )
     meant = Target.model_validate({name: value for name, value in target.items() if name != REFERENCE_POINT})
     own = {name.removeprefix("car."): value for name, value in vehicle.items() if name.startswith("car.")}

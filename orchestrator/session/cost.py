@@ -15,7 +15,7 @@ MAX_BYTES = 1e12
 """A run that may write a larger log is refused: no computer that parks cars has the room."""
 
 
-def told_cost(exchanges: int, values: int) -> str:
+def cost_text(exchanges: int, values: int) -> str:
     """Return what a run of so many exchanges of so many values may take; empty if that is little.
 
     Raises ``BadInput`` if it is more than a computer has.

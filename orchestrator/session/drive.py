@@ -7,7 +7,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign
-from orchestrator.session.provenance import started_now
+from orchestrator.session.provenance import start_record
 from orchestrator.session.session import NOBODY, Ran, run_scenario
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import Meter, Warnings, say
@@ -35,7 +35,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, r
             warn=Warnings(),
             foreign=foreign,
             realtime=realtime,
-            started=started_now(),
+            started=start_record(),
         )
     return ran
 
@@ -45,11 +45,11 @@ class _Clock(Meter):
 
     _next_ns = 0
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Show the time now and then."""
         if t_ns >= self._next_ns:
             self._next_ns = t_ns + SHOWN_NS
             self.at(t_ns / 1e9)
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""

@@ -8,10 +8,10 @@ from fmpy.model_description import ModelDescription
 
 from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.description import ports_of, read_description, unsupported
+from orchestrator.cosim.description import ports_of, read_description, variables_of_other_types
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.slave import Ports, Slave
-from orchestrator.foreign.archive import binary, checked, packed
+from orchestrator.foreign.archive import binary, check_archive, pack
 from orchestrator.foreign.limits import FmuLimits
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.load_scenario import load_system
@@ -65,22 +65,22 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
 
     ``loads``: have it loaded and initialized, in a process of its own. Raises ``BadInput`` if it is no FMU.
     """
-    path = packed(path) if path.is_dir() else path
-    names = checked(path)
+    path = pack(path) if path.is_dir() else path
+    names = check_archive(path)
     description = read_description(path)
     place = place or likely_place(path, description, scenario)
     fitting = _fitting(path, place, scenario, timeout)
     slaves = make_slaves(fitting.scenario, None, Messages(), fitting.foreign)
     try:
         slave = next(item for item in slaves if item.name == place)
-        system, problems = _assembled(fitting.scenario, slaves)
+        system, problems = _try_assembly(fitting.scenario, slaves)
         problems += _loading(slave) if loads else []
         remarks = [] if system is None else loops(system)
-        remarks += _left_out(fitting.unsupported_parameters, place)
+        remarks += _omission_text(fitting.unsupported_parameters, place)
         return FmuReport(
             _about(path, names, description),
             place,
-            [] if system is None else _connected(system, slave),
+            [] if system is None else _connection_lines(system, slave),
             [] if system is None else _not_fed(system, slave),
             _not_understood(system, slave, description),
             unsaid(slave),
@@ -123,13 +123,13 @@ def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:
     return found
 
 
-def _left_out(names: list[str], place: str) -> list[str]:
+def _omission_text(names: list[str], place: str) -> list[str]:
     own = [name.removeprefix(f"{place}.") for name in names if name.startswith(f"{place}.")]
     more = f" and {len(own) - MAX_SHOWN} more" if len(own) > MAX_SHOWN else ""
     return [f"it has no parameters {', '.join(own[:MAX_SHOWN])}{more}: they are left out"] if own else []
 
 
-def _assembled(scenario: Scenario, slaves: list[Slave]) -> tuple[Assembled | None, list[str]]:
+def _try_assembly(scenario: Scenario, slaves: list[Slave]) -> tuple[Assembled | None, list[str]]:
     try:
         return assemble(scenario, slaves), []
     except BadInput as error:
@@ -175,7 +175,7 @@ def _about(path: Path, names: list[str], description: Any) -> dict[str, str]:
     }
 
 
-def _connected(system: Assembled, slave: Slave) -> list[str]:
+def _connection_lines(system: Assembled, slave: Slave) -> list[str]:
     number = system.slaves.index(slave)
     found = []
     for link in system.connections:
@@ -205,7 +205,7 @@ def _not_fed(system: Assembled, slave: Slave) -> list[str]:
 
 def _not_understood(system: Assembled | None, slave: Slave, description: Any) -> list[str]:
     spare = [] if system is None else without_consumer(system.slaves.index(slave), system)
-    return [*spare, *unsupported(description, "input", "output", "parameter")]
+    return [*spare, *variables_of_other_types(description, "input", "output", "parameter")]
 
 
 def _missing(slave: Slave, ending: EndCondition) -> list[str]:

@@ -43,7 +43,7 @@ class Foreign(NamedTuple):
         of_system = {slave: fmu_of(file) for slave, file in named.items() if slave not in self.files}
         return self._replace(files={**of_system, **self.files}) if of_system else self
 
-    def made(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "Slave":
+    def make_instance(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "Slave":
         """Return the slave ``name`` that runs the FMU at ``path``."""
         model = MODELS.get(name)
         if self.is_in_process and not is_fmi3(path):
@@ -111,9 +111,9 @@ def fmu_of(text: str) -> Path:
         return own_fmu(text)
     path = Path(text)
     if path.is_dir():
-        from orchestrator.foreign.archive import packed
+        from orchestrator.foreign.archive import pack
 
-        return packed(path)
+        return pack(path)
     if not path.is_file():
         raise BadInput("no such file", file=path)
     return path
@@ -122,9 +122,9 @@ def fmu_of(text: str) -> Path:
 def parameters_of(path: Path, slave: str) -> list[Variable]:
     """Return the parameters of an FMU that takes the place of ``slave``. Raises ``BadInput``."""
     from orchestrator.cosim.description import ports_of, read_description, text_parameters
-    from orchestrator.foreign.archive import checked
+    from orchestrator.foreign.archive import check_archive
 
-    checked(path)
+    check_archive(path)
     description = read_description(path)
     return [*ports_of(description, "parameter", MODELS.get(slave), path).variables, *text_parameters(description)]
 

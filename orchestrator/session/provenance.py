@@ -34,7 +34,7 @@ def provenance(scenario: Scenario, slaves: Iterable[Slave], kind: str, foreign: 
     }
 
 
-def started_now() -> dict[str, Any]:
+def start_record() -> dict[str, Any]:
     """Return time (UTC, ISO 8601), command line, folder and git commit: what differs between two equal runs.
 
     ``SOURCE_DATE_EPOCH`` [s since 1970] sets the time, for results that are equal byte by byte.

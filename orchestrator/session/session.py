@@ -17,7 +17,7 @@ from orchestrator.log.line import Line
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.cost import told_cost
+from orchestrator.session.cost import cost_text
 from orchestrator.session.foreign import Foreign, undriven
 from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
@@ -65,11 +65,11 @@ class Messages:
         """Pass on a message of an FMU."""
         self.say(self.t_ns, FMI_LEVELS.get(status, ERROR), name, text)
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Note the time."""
         self.t_ns = t_ns
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""
 
 
@@ -80,9 +80,9 @@ def make_slaves(
     foreign = foreign.with_system(scenario.system)
     slaves: list[Slave] = []
     for name in scenario.places:
-        parameters = scenario.given(name)
+        parameters = scenario.parameters_for(name)
         if name in foreign.files:
-            slaves.append(foreign.made(name, foreign.files[name], parameters, messages.from_fmu))
+            slaves.append(foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu))
             continue
         model = scenario.models[name]
         parameters = {key: value for key, value in parameters.items() if model.shows(key)}
@@ -114,7 +114,7 @@ def run_scenario(
 
     ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
     somebody else's, in the place of ours or beside them. ``realtime`` holds the run to the clock on the wall.
-    ``started`` says when and by which command, for the log (``provenance.started_now``).
+    ``started`` says when and by which command, for the log (``provenance.start_record``).
     """
     messages = Messages()
     foreign = foreign.with_system(scenario.system)
@@ -164,23 +164,26 @@ def run_slaves(
     info = provenance(scenario, system.slaves, kind, foreign) | ({"started": dict(started)} if started else {})
     recorder = Recorder(system.slaves, exchanges)
     master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
-    file = None if log is None else _begun_log(log, system, scenario, info, master, messages)
+    file = None if log is None else _begin_log(log, system, scenario, info, master, messages)
     master.observers += observers
     if realtime is not None:
         realtime.join(master, scenario, messages.say, messages.listeners)
     for text in said:
         messages.say(0, WARNING, "system", text)
     try:
-        end, wall_time = _driven(master, messages)
+        end, wall_time = _drive(master, messages)
     except (BadInput, NotRunError, *RESOURCES):
         if file is not None and not recorder.count:
             file.discard()
         raise
-    info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.told()} if realtime else {})}
+    info |= {
+        "end": {"reason": end.reason, "t_ns": end.t_ns},
+        **({"realtime": realtime.lateness_statistics()} if realtime else {}),
+    }
     return Ran(recorder.recording(info), end, said, wall_time, [] if file is None else file.lines)
 
 
-def _begun_log(
+def _begin_log(
     path: Path, system: Assembled, scenario: Scenario, info: dict[str, Any], master: Master, messages: Messages
 ) -> "McapLog":
     """Return the log at ``path`` to which the run will be written."""
@@ -200,12 +203,12 @@ def _reachable_stop_ns(system: Assembled, scenario: Scenario) -> int:
     common = math.lcm(*steps)
     stop_ns = scenario.stop_ns // common * common
     if not stop_ns:
-        text = f"{scenario.longest:.9g} s is less than the {common / NS_PER_SECOND:.9g} s which {_fixed(system)} needs"
-        raise BadInput(text, file=scenario.file, key="stop_time")
+        text = f"{scenario.longest:.9g} s is less than the {common / NS_PER_SECOND:.9g} s"
+        raise BadInput(f"{text} which {_fixed_steps(system)} needs", file=scenario.file, key="stop_time")
     return stop_ns
 
 
-def _fixed(system: Assembled) -> str:
+def _fixed_steps(system: Assembled) -> str:
     return ", ".join(item.name for item in system.slaves if not item.has_variable_step)
 
 
@@ -213,25 +216,25 @@ def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str
     """Return that a run ends before its stop time, if it does."""
     if stop_ns == scenario.stop_ns:
         return []
-    text = f"stop_time {scenario.longest:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
-    return [f"{text}: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"]
+    text = f"stop_time {scenario.longest:.9g} s is no whole number of steps"
+    return [f"{text}, and the step of {_fixed_steps(system)} is fixed: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"]
 
 
 def _warnings(system: Assembled, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:
     """Return what is allowed in a system but hardly meant, or costly."""
-    cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
+    cost = cost_text(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
     ending = scenario.stop_condition if scenario.task != "open_loop" else None
     ignored = scenario.system.ignored if scenario.system is not None else []
     early = _early_stop(system, scenario, stop_ns)
     return [*remarks(system, ending, ignored), *early, *implausible(scenario), *([cost] if cost else [])]
 
 
-def _driven(master: Master, messages: Messages) -> tuple[End, float]:
+def _drive(master: Master, messages: Messages) -> tuple[End, float]:
     """Run; return how it ended, and the time from the first exchange to the closed log [s]."""
-    end = _guarded(messages, master.initialize)
+    end = _guard(messages, master.initialize)
     begun = time.perf_counter()
     if end is None:
-        end = _guarded(messages, master.run)
+        end = _guard(messages, master.run)
     assert end is not None
     master.finish(end)
     wall_time = time.perf_counter() - begun
@@ -257,7 +260,7 @@ def _master(system: Assembled, scenario: Scenario, stop_ns: int, kind: str) -> M
     return master
 
 
-def _guarded(messages: Messages, act: Callable[[], End | None]) -> End | None:
+def _guard(messages: Messages, act: Callable[[], End | None]) -> End | None:
     """Return what ``act`` returns, or how the run ended if it cannot go on."""
     try:
         return act()

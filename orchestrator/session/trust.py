@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from orchestrator.text.console import QUIET, say
-from orchestrator.text.errors import BadInput, shown
+from orchestrator.text.errors import BadInput, format_value
 from orchestrator.text.printable import printable
 
 
@@ -46,7 +46,7 @@ def require_trust(origin: Path, code: Iterable[str]) -> None:
     if not names or _Policy.now == "all" or os.environ.get(VARIABLE) == "all" or is_trusted(folder):
         return
     more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    listed = ", ".join(shown(name) for name in names[:MAX_NAMES]) + more
+    listed = ", ".join(format_value(name) for name in names[:MAX_NAMES]) + more
     if _Policy.now != "remember" and not _agrees(origin, listed, folder):
         text = f"runs code that comes with it: {listed}; add --trust if you trust {folder} (it is remembered)"
         raise BadInput(text, file=origin)

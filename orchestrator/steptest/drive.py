@@ -87,7 +87,7 @@ def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
     t: Array = np.minimum(np.arange(count, dtype=np.float64) * test.step_ns, test.stop_ns) / 1e9
     ports, columns = slave.inputs, {}
     if test.replay:
-        columns = _replayed(test, slave, t)
+        columns = _replay(test, slave, t)
     given = flatten_section({}, ports.names, file=test.file, key="inputs")
     for name, value in test.inputs.items():
         if name in ports.index or not isinstance(value, Mapping):
@@ -103,7 +103,7 @@ def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
     return columns
 
 
-def _replayed(test: StepTest, slave: Slave, t: Array) -> dict[int, Array]:
+def _replay(test: StepTest, slave: Slave, t: Array) -> dict[int, Array]:
     path = log_file(str(test.near(test.replay)))
     recording = read_log(path)
     owner = _owner(recording, slave, path)
@@ -147,7 +147,7 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
         path = foreign.files.get(model) or fmu_of(str(test.near(model)))
         name = model if model in MODELS else OTHER
         known = parameters_of(path, name)
-        return foreign.made(name, path, _parameters(test, known, name), lambda *said: None)
+        return foreign.make_instance(name, path, _parameters(test, known, name), lambda *said: None)
     if model in MODELS:
         ours = models_for(test.parameters)[model]
         parameters = _parameters(test, variables(ours.params), model)

@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from orchestrator.scenario.requirements import Condition
 from orchestrator.steptest.response import RESPONSES
-from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
+from orchestrator.text.errors import BadInput, format_value, suggestion_or_choices
 
 Number = float | str | bool
 BOUNDS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
@@ -18,7 +18,7 @@ class _StepTestPart(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _known(cls, data: Any) -> Any:
+    def _check_keys(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             return data
         known = {item.alias or name: item for name, item in cls.model_fields.items()}
@@ -112,7 +112,7 @@ class Expectation(_StepTestPart):
             return data
         words = [key for key in given if key in RESPONSES]
         if len(words) != 1:
-            raise BadInput(f"{shown(given)}: expected exactly one of {', '.join(RESPONSES)}", key="response")
+            raise BadInput(f"{format_value(given)}: expected exactly one of {', '.join(RESPONSES)}", key="response")
         rest = {key: value for key, value in given.items() if key != words[0]}
         return {**data, "response": {**rest, "measure": words[0], "limit": given[words[0]]}}
 

@@ -21,7 +21,7 @@ class Response(NamedTuple):
     """Share of the way."""
 
     @property
-    def done(self) -> Array:
+    def progress(self) -> Array:
         """Share of the way that is done."""
         way = self.goal - self.values[0]
         return (self.values - self.values[0]) / way if way != 0.0 else np.ones(len(self.values))
@@ -35,7 +35,7 @@ def rise_time(response: Response) -> float:
 
 def settling_time(response: Response) -> float:
     """Return the time after which the value stays in the band around the goal [s]; infinite if it does not."""
-    outside = np.flatnonzero(np.abs(response.done - 1.0) > response.band)
+    outside = np.flatnonzero(np.abs(response.progress - 1.0) > response.band)
     if len(outside) == 0:
         return 0.0
     after = int(outside[-1]) + 1
@@ -44,7 +44,7 @@ def settling_time(response: Response) -> float:
 
 def overshoot(response: Response) -> float:
     """Return how far the value goes beyond the goal, as a share of the way."""
-    return max(0.0, float(np.max(response.done)) - 1.0)
+    return max(0.0, float(np.max(response.progress)) - 1.0)
 
 
 def steady_state_error(response: Response) -> float:
@@ -54,7 +54,7 @@ def steady_state_error(response: Response) -> float:
 
 
 def _crossing(response: Response, share: float) -> float:
-    done, t = response.done, response.t
+    done, t = response.progress, response.t
     row = int(np.argmax(done >= share))
     if done[row] < share:
         return np.inf

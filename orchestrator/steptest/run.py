@@ -8,7 +8,7 @@ from orchestrator.session.foreign import Foreign
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.step_test import StepTest
-from orchestrator.steptest.verdict import equivalent, judged
+from orchestrator.steptest.verdict import equivalent, judge_step_test
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check
 
@@ -16,7 +16,7 @@ from orchestrator.verdict.judge import Check
 def run_step_test(test: StepTest, kind: str, foreign: Foreign = NOBODY) -> tuple[Recording, list[Check]]:
     """Return the recording of a test and a check for each expectation. Raises ``BadInput``, ``RunError``."""
     recording = drive(test, kind, foreign)
-    checks = judged(test, recording)
+    checks = judge_step_test(test, recording)
     if test.reference is not None:
         checks += equivalent(test, recording, _reference(test, kind))
     return recording, checks

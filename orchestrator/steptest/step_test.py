@@ -63,7 +63,7 @@ class StepTest(BaseModel):
 
     @field_validator("inputs", mode="before")
     @classmethod
-    def _named(cls, data: Any) -> Any:
+    def _default_empty(cls, data: Any) -> Any:
         return data or {}
 
     @property

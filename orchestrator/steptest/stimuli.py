@@ -9,7 +9,7 @@ import numpy as np
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.system.units import UnfitUnitsError, conversion
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, format_value, suggestion
 from orchestrator.text.quantities import FACTORS, NS_PER_SECOND, number, scalar, unit_symbol
 from orchestrator.text.table_file import TableError, TextTable, read_table, unit_in_name
 
@@ -46,13 +46,13 @@ def stimulus(given: object, place: StimulatedInput, t: Array) -> Array:
     if not isinstance(given, Mapping):
         return np.full(len(t), place.value(given))
     if len(given) != 1:
-        raise place.wrong(f"{shown(dict(given))}: expected one of {', '.join(SHAPES)}")
+        raise place.wrong(f"{format_value(dict(given))}: expected one of {', '.join(SHAPES)}")
     (word, parts), *_ = given.items()
     if word not in SHAPES:
         raise place.wrong(f"{word}: no such shape{suggestion(str(word), SHAPES)}; known are {', '.join(SHAPES)}")
     keys, make = SHAPES[word]
     if keys and not isinstance(parts, Mapping):
-        raise place.wrong(f"{word}: {shown(parts)}: expected a mapping with {', '.join(keys)}")
+        raise place.wrong(f"{word}: {format_value(parts)}: expected a mapping with {', '.join(keys)}")
     for key in parts if keys else ():
         if key not in keys:
             raise place.wrong(f"{word}: {key}: unknown{suggestion(str(key), keys)}; known are {', '.join(keys)}")

@@ -24,7 +24,7 @@ def always(margins: Array, rows: Bools) -> Decided | None:
     """Return the least margin in ``rows``; NaN is the worst."""
     if not rows.any():
         return None
-    row = int(np.argmin(np.where(rows, _known(margins), np.inf)))
+    row = int(np.argmin(np.where(rows, _without_nan(margins), np.inf)))
     return Decided(float(margins[row]), row)
 
 
@@ -35,7 +35,7 @@ def eventually(margins: Array, starts: Indices, length: int) -> Decided | None:
 
 def until(holds: Array, ends: Array, starts: Indices, length: int) -> Decided | None:
     """Return the margin of "``holds`` until ``ends``", which has to come within ``length`` rows of each start."""
-    return _worst([_until(_known(holds), _known(ends), int(start), length) for start in starts])
+    return _worst([_until(_without_nan(holds), _without_nan(ends), int(start), length) for start in starts])
 
 
 def rises(margins: Array) -> Indices:
@@ -45,7 +45,7 @@ def rises(margins: Array) -> Indices:
 
 
 def _best(margins: Array, start: int, length: int) -> Decided:
-    window = _known(margins[start : start + length])
+    window = _without_nan(margins[start : start + length])
     row = int(np.argmax(window))
     return Decided(float(window[row]), start + row)
 
@@ -62,5 +62,5 @@ def _worst(found: list[Decided]) -> Decided | None:
     return min(found, key=lambda item: item.margin) if found else None
 
 
-def _known(margins: Array) -> Array:
+def _without_nan(margins: Array) -> Array:
     return np.where(np.isnan(margins), -np.inf, margins)

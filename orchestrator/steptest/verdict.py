@@ -32,7 +32,7 @@ class Found(NamedTuple):
     margins: Array
 
 
-def judged(test: StepTest, recording: Recording) -> list[Check]:
+def judge_step_test(test: StepTest, recording: Recording) -> list[Check]:
     """Return one check for each expectation. Raises ``BadInput`` for a signal or unit that does not fit."""
     return [*(_Judge(test, recording, item).check() for item in test.expect), *_contact(test, recording)]
 
@@ -41,10 +41,12 @@ def _contact(test: StepTest, recording: Recording) -> list[Check]:
     """Return the check that the car touches nothing, for a vehicle with something in its scene."""
     owner = next(iter(recording.signals), "").split(".", 1)[0]
 
-    def renamed(items: Mapping[str, Any]) -> dict[str, Any]:
+    def with_vehicle_names(items: Mapping[str, Any]) -> dict[str, Any]:
         return {f"vehicle.{name.removeprefix(f'{owner}.')}": item for name, item in items.items()}
 
-    as_vehicle = replace(recording, signals=renamed(recording.signals), parameters=renamed(recording.parameters))
+    as_vehicle = replace(
+        recording, signals=with_vehicle_names(recording.signals), parameters=with_vehicle_names(recording.parameters)
+    )
     scenario = Scenario(name="test", contact_allowed=test.contact_allowed)
     return judge([scenario.contact_rule], as_vehicle, facts_of(as_vehicle, scenario), str(test.file))
 
@@ -104,24 +106,24 @@ class _Judge:
             return self._response(item.response)
         limit = item.always or item.eventually or item.hold
         assert limit is not None
-        found = self._found(limit)
-        decided = self._decided(found)
+        found = self._measure(limit)
+        decided = self._decide(found)
         if decided is None:
-            return self._said(limit, found, Outcome(math.nan, math.nan, 0.0, item.if_never == "pass", NEVER))
+            return self._check(limit, found, Outcome(math.nan, math.nan, 0.0, item.if_never == "pass", NEVER))
         value = float(self._recording.signals[found.signal][decided.row])
         states = self._recording.states(found.signal)
         note = "" if not math.isfinite(value) else states.get(int(value), "")
         t = float(self._recording.t[decided.row])
-        return self._said(limit, found, Outcome(value, decided.margin, t, decided.margin >= 0.0, note))
+        return self._check(limit, found, Outcome(value, decided.margin, t, decided.margin >= 0.0, note))
 
-    def _decided(self, found: Found) -> Decided | None:
+    def _decide(self, found: Found) -> Decided | None:
         item, count = self._item, len(self._recording.t)
         starts = self._starts()
         length = count if item.within is None else round(self._seconds(item.within) / self._step) + 1
         if item.eventually is not None:
             return eventually(found.margins, starts, length)
         if item.until is not None:
-            return until(found.margins, self._found(item.until).margins, starts, length)
+            return until(found.margins, self._measure(item.until).margins, starts, length)
         rows = np.zeros(count, dtype=bool)
         for start in starts:
             rows[start : start + length] = True
@@ -131,7 +133,7 @@ class _Judge:
         window = self._window()
         if self._item.after is None:
             return np.flatnonzero(window)[:1].astype(np.intp)
-        begun = rises(self._found(self._item.after).margins)
+        begun = rises(self._measure(self._item.after).margins)
         return begun[window[begun]]
 
     def _window(self) -> Bools:
@@ -140,7 +142,7 @@ class _Judge:
         last = math.inf if item.to is None else self._seconds(item.to)
         return np.asarray((t >= first - 1e-9) & (t <= last + 1e-9))
 
-    def _found(self, limit: Limit) -> Found:
+    def _measure(self, limit: Limit) -> Found:
         name = self._name(limit.signal or self._item.signal)
         value = self._value(limit.value, name)
         return Found(name, value, CONDITIONS[limit.condition].margin(self._recording.signals[name], value))
@@ -161,9 +163,9 @@ class _Judge:
         margin = float(CONDITIONS[asked.limit.condition].margin(np.array([value]), limit)[0])
         found = Found(name, limit, np.array([margin]))
         outcome = Outcome(value, margin, self._seconds(asked.at), margin >= 0.0, unit=unit)
-        return self._said(asked.limit, found, outcome)
+        return self._check(asked.limit, found, outcome)
 
-    def _said(self, limit: Limit, found: Found, outcome: Outcome) -> Check:
+    def _check(self, limit: Limit, found: Found, outcome: Outcome) -> Check:
         item, states = self._item, self._recording.states(found.signal)
         named = states.get(int(found.limit), "") if states and limit.condition == "equals" else ""
         return Check(

@@ -23,7 +23,7 @@ class Pace:
         self._begun = 0.0
         self._late = array("d")
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Wait until ``t_ns`` after the first exchange."""
         if not self._late:
             self._begun = self._clock()
@@ -32,10 +32,10 @@ class Pace:
             self._sleep(early)
         self._late.append(max(0.0, self._clock() - self._begun - t_ns / 1e9))
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""
 
-    def told(self) -> dict[str, Any]:
+    def lateness_statistics(self) -> dict[str, Any]:
         """Return the lateness of all exchanges: median, 99th percentile, largest, at the end [s], and how many late."""
         late = np.array(self._late or [0.0], dtype=np.float64)
         median, high = (float(value) for value in np.quantile(late, (0.5, 0.99)))

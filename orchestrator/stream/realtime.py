@@ -43,16 +43,16 @@ class Realtime:
             f"set {TOKEN} to {self.token} first"
         )
 
-    def told(self) -> dict[str, Any]:
+    def lateness_statistics(self) -> dict[str, Any]:
         """Return how late the run was, and what was changed meanwhile."""
-        return {**self._pace.told(), "tuned": self._tuning.told if self._tuning else []}
+        return {**self._pace.lateness_statistics(), "tuned": self._tuning.told if self._tuning else []}
 
 
 class _Ticks:
     """Observer that tells somebody the simulated time."""
 
     def __init__(self, tell: Callable[[int], None]) -> None:
-        self.exchanged = tell
+        self.on_communication_point = tell
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""

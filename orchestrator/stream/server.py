@@ -60,7 +60,7 @@ class LiveChannels:
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Nothing: what a file says of a whole run has no place in a stream."""
 
-    def known_channel(self, topic: str, message: type[Any]) -> int:
+    def add_channel(self, topic: str, message: type[Any]) -> int:
         """Return a new channel for a generated protobuf message class."""
         descriptors = build_file_descriptor_set(message).SerializeToString(deterministic=True)
         return self.channel(topic, message.DESCRIPTOR.full_name, descriptors, {})

@@ -67,7 +67,7 @@ class Tuning:
         self._wishes.append(_Wish(name, float(value), by))
         return ""
 
-    def exchanged(self, t_ns: int) -> None:
+    def on_communication_point(self, t_ns: int) -> None:
         """Change what was asked for; it holds from the step after this exchange on."""
         while self._wishes:
             wish = self._wishes.popleft()
@@ -78,5 +78,5 @@ class Tuning:
             self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value, "by": wish.by})
             self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on, set by {wish.by}")
 
-    def closed(self, end: End) -> None:
+    def on_terminate(self, end: End) -> None:
         """Nothing to close."""

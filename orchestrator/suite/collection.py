@@ -12,9 +12,9 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import SUCCESS, Scenario
-from orchestrator.suite.suite import Tested
+from orchestrator.suite.suite import SuiteResult
 from orchestrator.text.readable import changes_text, manoeuvres_text
-from orchestrator.verdict.geometry import CarOutline, described, place, slot_box
+from orchestrator.verdict.geometry import CarOutline, place, slot_box, vehicle_parameters
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -31,7 +31,7 @@ CARD = """<article class="card run {kind}">
 WIDTH, HEIGHT = 300.0, 150.0
 
 
-def write_collection(path: Path, tested: list[Tested], about: Mapping[str, str]) -> None:
+def write_collection(path: Path, tested: list[SuiteResult], about: Mapping[str, str]) -> None:
     """Write the page; failures come first. ``about`` says what was tested, when and how."""
     passed = sum(item.passed for item in tested)
     kind = "good" if passed == len(tested) else "bad"
@@ -42,14 +42,14 @@ def write_collection(path: Path, tested: list[Tested], about: Mapping[str, str])
     write_whole(path, still_page(title, body))
 
 
-def _card(item: Tested) -> str:
+def _card(item: SuiteResult) -> str:
     name = item.scenario.name
     missed = [f"{case.name}: {case.text}" for case in item.cases if not case.passed and not case.skipped]
     missed += [item.error] if item.error else []
     summary, changes = item.summary, changes_text(item.scenario.overrides)
     outcome = ""
     if summary:
-        outcome = f"{summary.outcome.replace('_', ' ')}{_expected(item, summary.outcome)}"
+        outcome = f"{summary.outcome.replace('_', ' ')}{_expectation_text(item, summary.outcome)}"
         outcome += f", {summary.duration:.1f} s, {manoeuvres_text(summary.manoeuvres)}"
     return CARD.format(
         kind="good" if item.passed else "bad",
@@ -63,7 +63,7 @@ def _card(item: Tested) -> str:
     )
 
 
-def _expected(item: Tested, outcome: str) -> str:
+def _expectation_text(item: SuiteResult, outcome: str) -> str:
     """Return what the scenario expects, where the outcome alone does not say why the test passed or failed."""
     scenario = item.scenario
     wanted = scenario.expected_outcome or SUCCESS[scenario.task]
@@ -80,7 +80,7 @@ def picture(recording: Recording, scenario: Scenario) -> str:
         return ""
     x, y, heading = x[good], y[good], heading[good]
     target = scenario.target.pose if scenario.target is not None else (0.0, 0.0, 0.0)
-    car = CarOutline.of(described(scenario, recording.parameters_of("vehicle"))).outline()
+    car = CarOutline.of(vehicle_parameters(scenario, recording.parameters_of("vehicle"))).outline()
     rows = np.unique(np.linspace(0, len(x) - 1, 160).astype(int))
     shapes: list[tuple[str, Array]] = []
     if scenario.slot is not None:

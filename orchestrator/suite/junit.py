@@ -47,7 +47,7 @@ def cases_of(checks: list[Check]) -> list[Case]:
     return found
 
 
-def told_apart(cases: list[Case]) -> list[Case]:
+def number_duplicates(cases: list[Case]) -> list[Case]:
     """Return the cases, numbered where a name comes again: CI servers take equal names for one test."""
     names = [case.name for case in cases]
     counts = [names[:at].count(name) for at, name in enumerate(names)]
@@ -80,7 +80,7 @@ def write_junit(path: Path, suites: list[Suite], about: Mapping[str, str] = Mapp
                 ElementTree.SubElement(properties, "property", name=_text(key), value=_text(text))
         if suite.error:
             _case(node, suite.name, "run", "error", suite.error)
-        for case in told_apart(suite.cases):
+        for case in number_duplicates(suite.cases):
             kind = "" if case.passed else "skipped" if case.skipped else "failure"
             _case(node, suite.name, case.name, kind, case.text)
     root.attrib.update(_counts(totals))

@@ -23,10 +23,10 @@ from orchestrator.session.session import run_scenario
 from orchestrator.steptest.curves import write_curves
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, is_step_test, load_step_test
-from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
+from orchestrator.suite.junit import Case, Suite, cases_of, number_duplicates
 from orchestrator.text.errors import PARKED, RESOURCES, BadInput, NotRunError
-from orchestrator.text.failures import explained
-from orchestrator.text.owned import owned
+from orchestrator.text.failures import exit_code_and_message
+from orchestrator.text.owned import lock_folder
 from orchestrator.text.readable import changes_text
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.numbers import facts_of
@@ -39,7 +39,7 @@ MOST_LETTERS = 100
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
 
 
-class Tested(NamedTuple):
+class SuiteResult(NamedTuple):
     """One scenario with its verdict."""
 
     scenario: Scenario
@@ -95,7 +95,7 @@ class Bench(NamedTuple):
     """When and by which command the test was started, for the logs."""
 
 
-def chosen(names: list[str]) -> list[str]:
+def select_scenarios(names: list[str]) -> list[str]:
     """Return the scenarios that ``names`` mean: names, files, and patterns such as ``guo2015-*`` over shipped ones."""
     found: list[str] = []
     for name in names:
@@ -106,7 +106,7 @@ def chosen(names: list[str]) -> list[str]:
     return found
 
 
-def run_tests(names: list[str], sets: list[str], bench: Bench, out: Path, jobs: int = 1) -> Iterator[Tested]:
+def run_tests(names: list[str], sets: list[str], bench: Bench, out: Path, jobs: int = 1) -> Iterator[SuiteResult]:
     """Yield the verdicts of scenarios in their order, ``jobs`` of them at a time; none begins after an interrupt."""
     taken: set[str] = set()
     if jobs == 1:
@@ -133,7 +133,7 @@ def _claim(name: str, taken: set[str], what: str, file: object) -> None:
         taken.add(name)
 
 
-def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str] | None = None) -> Tested:
+def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str] | None = None) -> SuiteResult:
     """Run one scenario, judge it, and keep log, summary and replay page in ``out``/its name.
 
     Whatever is wrong with it or with an FMU is an error of this scenario alone; so is a name already ``taken``.
@@ -149,9 +149,9 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
         _claim(scenario.name, taken, "scenario of this test", name)
         return _evaluate(scenario, ignored, bench, out / scenario.name)
     except Exception as error:
-        code, line = explained(error, ["test", name])
+        code, line = exit_code_and_message(error, ["test", name])
         could_not_run = isinstance(error, (NotRunError, *RESOURCES))
-        return Tested(scenario, None, None, [], ignored, line, code=code, could_not_run=could_not_run)
+        return SuiteResult(scenario, None, None, [], ignored, line, code=code, could_not_run=could_not_run)
 
 
 def _nameable(text: str) -> str:
@@ -159,8 +159,8 @@ def _nameable(text: str) -> str:
     return UNNAMEABLE.sub("-", text).lstrip(".-")[:MOST_LETTERS] or "unnamed"
 
 
-def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
-    with owned(folder):
+def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> SuiteResult:
+    with lock_folder(folder):
         ran = run_scenario(
             scenario,
             bench.files,
@@ -180,10 +180,10 @@ def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path
             write_page(folder, ran.recording, judged, ran.lines)
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expected_outcome != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
-    return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
+    return SuiteResult(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
 
 
-def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: set[str]) -> Tested:
+def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: set[str]) -> SuiteResult:
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
         raise BadInput(
@@ -195,14 +195,14 @@ def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken
     recording, checks = run_step_test(test, bench.kind, bench.foreign)
     bench.look(scenario, bench.foreign.files, recording)
     folder = out / scenario.name
-    with owned(folder):
+    with lock_folder(folder):
         write_curves(folder / PAGE, test, recording, checks)
     end = str(recording.info["end"]["reason"])
     broken = end if end.startswith("error") else ""
-    return Tested(scenario, None, None, [] if broken else told_apart(cases_of(checks)), [], broken)
+    return SuiteResult(scenario, None, None, [] if broken else number_duplicates(cases_of(checks)), [], broken)
 
 
-def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
+def provenance_of(tested: list[SuiteResult], command: str) -> dict[str, str]:
     """Return what was tested, when and how: for the page and JUnit."""
     used = [fmus_of(item) for item in tested if item.summary is not None]
     fmus = {
@@ -214,7 +214,7 @@ def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
     return {**about, "warning": "; ".join(remarks)} if remarks else about
 
 
-def fmus_of(tested: Tested) -> dict[str, str]:
+def fmus_of(tested: SuiteResult) -> dict[str, str]:
     """Return FMU instance -> its file (or the folder of its sources) and hash."""
     used = tested.summary.fmus if tested.summary is not None else []
     return {item.name: f"{item.path}, SHA-256 {item.sha256}" for item in used}
@@ -231,4 +231,4 @@ def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Cas
     outcome = Case("outcome", summary.outcome == scenario.expected_outcome, reached)
     contact = [check for check in summary.checks if check.id == scenario.contact_rule.id]
     own = cases_of(summary.checks if scenario.expected_outcome == scenario.success else contact)
-    return told_apart([outcome, *own, *cases_of(extra)])
+    return number_duplicates([outcome, *own, *cases_of(extra)])

@@ -34,7 +34,7 @@ def run_batch(job: Job, chunk: Chunk) -> Array:
     """Return one row of measures per run of ``chunk``."""
     scenario = Scenario(**job.scenario)
     parameters, times = arrays(job, chunk)
-    rows = compiled(tuple(job.measures), scenario, own_choices(job, scenario, parameters))
+    rows = compile_models(tuple(job.measures), scenario, own_choices(job, scenario, parameters))
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, fault_numbers(job, chunk, scenario), out)
     return out
@@ -70,7 +70,7 @@ def rows_by(row: Callable[[int], Array], count: int) -> Array:
     return np.array(rows)
 
 
-def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices | None = None) -> Rows:
+def compile_models(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices | None = None) -> Rows:
     """Return the compiled runs of the models of ``scenario``, made once per process.
 
     ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
@@ -83,7 +83,7 @@ def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    models, kept = dict(scenario.models), [_recorded_signal(item) for item in job.measures]
+    models, kept = dict(scenario.models), [_signal_to_record(item) for item in job.measures]
     choices = choices_of(scenario, arrays(job, chunk)[0])
     return explanation(models, study_slices(models, signals_to_read(_ending(scenario), kept), dict(choices)))
 
@@ -96,7 +96,7 @@ def _compile_rows(
     choices: Choices | None,
     ending: Ending,
 ) -> Rows:
-    whole, kept = dict(models), [_recorded_signal(item) for item in measures]
+    whole, kept = dict(models), [_signal_to_record(item) for item in measures]
     complete = compile_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
@@ -110,5 +110,5 @@ def _ending(scenario: Scenario) -> Ending:
     return Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
 
 
-def _recorded_signal(measure: Measure) -> Kept:
+def _signal_to_record(measure: Measure) -> Kept:
     return Kept(measure.how, measure.signal, None if measure.when is None else When(*measure.when))

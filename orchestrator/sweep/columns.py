@@ -58,7 +58,7 @@ def columns_of(study: Study, job: Job) -> list[TableColumn]:
     ]
 
 
-def filled(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
+def fill_columns(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
     """Return the columns of a chunk by name, from what was kept of its runs."""
     truth = truths(job, chunk)
     verdict = judge(job, truth, rows)

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from orchestrator.cosim.master import Interrupt
-from orchestrator.sweep.batch import compiled
-from orchestrator.sweep.columns import filled
+from orchestrator.sweep.batch import compile_models
+from orchestrator.sweep.columns import fill_columns
 from orchestrator.sweep.engine import all_rows
 from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import chunks, make_job
@@ -18,10 +18,10 @@ def columns_in_memory(study: Study) -> dict[str, Any]:
     job = make_job(study)
     task = choose_task(study.scenario, None)
     if task.is_compiled:
-        compiled(tuple(job.measures), study.scenario)
+        compile_models(tuple(job.measures), study.scenario)
     todo = chunks(study.design, task.chunk)
     found = sorted(
         all_rows(make_engine(task, None, None).results(job, todo, Interrupt())), key=lambda item: item[0].number
     )
-    parts = [filled(study, job, chunk, rows) for chunk, rows in found]
+    parts = [fill_columns(study, job, chunk, rows) for chunk, rows in found]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -20,7 +20,7 @@ from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
 from orchestrator.text.quantities import NS_PER_SECOND
 from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.truth import TRUE_KEYS, Truth, joined, truth_of
+from orchestrator.verdict.truth import TRUE_KEYS, Truth, join_truths, truth_of
 
 Times = NDArray[np.int64]
 
@@ -129,7 +129,7 @@ def truths(job: Job, chunk: Chunk) -> Truth:
     same = truth_of(scenario, vehicle)
     keys = list(zip(job.owners, job.names, strict=True))
     if not any(f"{owner}.{name}".startswith(TRUE_KEYS) for owner, name in keys):
-        return same.repeated(len(chunk.seeds))
+        return same.repeat(len(chunk.seeds))
     found = []
     for values in chunk.values.tolist():
         given = list(zip(keys, values, strict=True))
@@ -137,7 +137,7 @@ def truths(job: Job, chunk: Chunk) -> Truth:
         moved = {owner: getattr(scenario, owner).model_copy(update=new) for owner, new in own.items() if new}
         car = {name: value for (owner, name), value in given if owner == "vehicle"}
         found.append(truth_of(scenario.model_copy(update=moved), {**vehicle, **car}))
-    return joined(found)
+    return join_truths(found)
 
 
 def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:

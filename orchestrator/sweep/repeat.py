@@ -15,7 +15,7 @@ from orchestrator.session.session import Ran
 from orchestrator.sweep.job import chunk_scenario
 from orchestrator.sweep.table import UNREADABLE, Table
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
@@ -43,7 +43,7 @@ def folder_of_row(table: Path, number: int) -> Path:
 
 def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> Repeated:
     """Run row ``number`` again, with its results in ``out``. Raises ``BadInput`` if there is none."""
-    with owned(out):
+    with lock_folder(out):
         scenario = write_scenario(table, number, out / "scenario.yaml")
         ran = drive(scenario, kind, out / LOG)
         summary = summarize(ran.recording, scenario, ran.wall_time)

@@ -18,7 +18,7 @@ from orchestrator.sweep.study.theirs import files_of, signals_of
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import CHART, judge
-from orchestrator.verdict.measures import Measure, When, measured
+from orchestrator.verdict.measures import Measure, When, measure_recording
 from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, Facts, of_whole_run
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
@@ -103,7 +103,7 @@ def values_of(limit: Requirement, found: Mapping[Measure, Array]) -> Array:
     return np.where(np.isnan(found[Measure("first", CHART, measure.when)]), limit.limit, values)
 
 
-def recorded_limits(scenario: Scenario) -> list[int]:
+def limits_of_whole_runs(scenario: Scenario) -> list[int]:
     """Return the places of the limits of ``scenario`` that take the whole run."""
     return [
         place
@@ -126,7 +126,7 @@ def why_not_compiled(scenario: Scenario) -> str:
     """Return why runs of ``scenario`` need a full recording each, an empty string if they do not."""
     if scenario.system is not None:
         return "the scenario has a system of its own"
-    places = recorded_limits(scenario)
+    places = limits_of_whole_runs(scenario)
     return f"the limit {scenario.requirements[places[0]].id!r} needs the whole run" if places else ""
 
 
@@ -134,8 +134,8 @@ def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) ->
     """Return the row that the compiled batch would have made of this run, then the values of recorded limits."""
     end = str(recording.info["end"]["reason"])
     code = {"stop_time": STOP_TIME, "standstill": STANDSTILL}.get(end, ABORTED)
-    found = [measured(item, recording) for item in measures]
-    worst = [_worst(scenario.requirements[place], recording, scenario) for place in recorded_limits(scenario)]
+    found = [measure_recording(item, recording) for item in measures]
+    worst = [_worst(scenario.requirements[place], recording, scenario) for place in limits_of_whole_runs(scenario)]
     return np.array([code, float(recording.t_ns[-1]) if len(recording.t_ns) else 0.0, *found, *worst])
 
 

@@ -50,13 +50,13 @@ class Store:
         shutil.rmtree(self._gone, ignore_errors=True)
         if restart:
             self._forget()
-        self._size = self._begun(resume) or chunk_size
+        self._size = self._chunk_size_on_disk(resume) or chunk_size
         if not self._about.is_file():
             content = json.dumps({"chunk": chunk_size, "about": json.loads(self._text)})
             write_whole(self._about, content, sync=True)
         return self._size
 
-    def _begun(self, resume: bool) -> int:
+    def _chunk_size_on_disk(self, resume: bool) -> int:
         """Return the chunk size of the parts that are there, 0 if there are none."""
         if not self._about.is_file():
             if any(self.parts.glob("*.parquet")):

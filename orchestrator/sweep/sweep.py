@@ -13,8 +13,8 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.provenance import versions
-from orchestrator.sweep.batch import compiled, own_choices
-from orchestrator.sweep.columns import columns_of, filled
+from orchestrator.sweep.batch import compile_models, own_choices
+from orchestrator.sweep.columns import columns_of, fill_columns
 from orchestrator.sweep.engine import Engine
 from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, arrays, chunks, job_to, make_job
@@ -78,7 +78,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     if missing and task.is_compiled:
         parameters = arrays(job, missing[0])[0]
-        compiled(tuple(job.measures), study.scenario, own_choices(job, study.scenario, parameters))
+        compile_models(tuple(job.measures), study.scenario, own_choices(job, study.scenario, parameters))
     if missing:
         _run(study, job, missing, make_engine(task, options.dask, options.workers), store, swept)
     if swept.done == total:
@@ -127,7 +127,7 @@ def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: St
             if isinstance(rows, NotRunError):
                 swept.not_run = NotRunError(*(swept.not_run.args if swept.not_run else ()), *rows.args)
                 continue
-            columns = filled(study, job, chunk, rows)
+            columns = fill_columns(study, job, chunk, rows)
             store.write(chunk.number, columns)
             swept.successes += int((columns["outcome"] == study.scenario.success).sum())
             swept.aborted += int((columns["outcome"] == "aborted").sum())

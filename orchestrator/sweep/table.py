@@ -74,11 +74,11 @@ class Table:
 
     def column(self, name: str) -> Any:
         """Return a column as an array; outcomes and reasons as texts. Raises ``BadInput`` if it is damaged."""
-        with self._undamaged(name):
+        with self._report_damage(name):
             return self._file.read([name]).column(0).to_numpy()
 
     @contextmanager
-    def _undamaged(self, what: str) -> Iterator[None]:
+    def _report_damage(self, what: str) -> Iterator[None]:
         try:
             yield
         except (OSError, ValueError, KeyError, IndexError, pa.ArrowException) as error:
@@ -101,7 +101,7 @@ class Table:
         for group in range(self._file.num_row_groups):
             rows = self._file.metadata.row_group(group).num_rows
             if number < rows:
-                with self._undamaged(f"row {number}"):
+                with self._report_damage(f"row {number}"):
                     found: dict[str, Any] = self._file.read_row_group(group).slice(number, 1).to_pylist()[0]
                     return found
             number -= rows

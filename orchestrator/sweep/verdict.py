@@ -11,8 +11,15 @@ from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import PENETRATION, Outcome, Scenario
 from orchestrator.sweep.job import Job
-from orchestrator.sweep.rows import ABORTED, CLEARANCE_NUMBER, FIRST_MEASURE, last_words, recorded_limits, values_of
-from orchestrator.sweep.study.theirs import declared
+from orchestrator.sweep.rows import (
+    ABORTED,
+    CLEARANCE_NUMBER,
+    FIRST_MEASURE,
+    last_words,
+    limits_of_whole_runs,
+    values_of,
+)
+from orchestrator.sweep.study.theirs import declare_signals
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers, things_of
@@ -52,7 +59,7 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     """Return the results of runs that share a scenario's limits, from rows of ``measures``."""
     columns = rows[:, FIRST_MEASURE:].T
     found = dict(zip(measures, columns, strict=False))
-    recorded = dict(zip(recorded_limits(scenario), columns[len(measures) :], strict=True))
+    recorded = dict(zip(limits_of_whole_runs(scenario), columns[len(measures) :], strict=True))
     results = numbers(rows[:, 1] / 1e9, found, truth)
     for place, values in recorded.items():
         if scenario.requirements[place].signal in (PENETRATION, CLEARANCE_NUMBER):
@@ -70,7 +77,7 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
             shares = np.maximum(shares, np.where(is_asked, share(limit.condition, values, bound), 0.0))
     mode, reason = (found[item] for item in last_words(scenario))
     broken = ["error" if end == ABORTED else "" for end in rows[:, 0].tolist()]
-    named = declared(scenario, scenario.stop_condition.signal, scenario.stop_condition.reason)
+    named = declare_signals(scenario, scenario.stop_condition.signal, scenario.stop_condition.reason)
     judged = outcomes(scenario, Ends(broken, mode, reason, found[SPEED]), asked, *named)
     codes = np.array([OUTCOMES.index(outcome) for outcome, _ in judged], dtype=np.int8)
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})

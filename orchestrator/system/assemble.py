@@ -8,12 +8,12 @@ from fmus.contents.units import BASE
 from modelkit.connections import CannotConnectError, Wire
 from modelkit.connections import connections as by_name
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.connections import Connection, part_of_slave, wired
+from orchestrator.cosim.connections import Connection, bundle_wires, part_of_slave
 from orchestrator.cosim.slave import Scale, Slave
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.system_text import ROLES, Feed, SystemText, UnitEntry
-from orchestrator.system.feeds import Feeder, Pin, declare_units, joined, pins_of
+from orchestrator.system.feeds import Feeder, Pin, declare_units, join_connections, pins_of
 from orchestrator.system.listener import Listener
 from orchestrator.system.units import scale_of
 from orchestrator.text.errors import BadInput, suggestion
@@ -55,9 +55,9 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
         pins_of(signal, slaves, False, scenario.file or None, f"system.modes.{signal}")
     wires = _matching(slaves, fed) if text.by_name else []
     fed |= {(wire.target, wire.input) for wire in wires}
-    plain = joined(found)
+    plain = join_connections(found)
     roles = [link for key, (feed, targets) in feeds.items() for link in _role(feeder, feed, targets, slaves, key)]
-    connections = [*wired(wires), *plain, *joined(roles)]
+    connections = [*bundle_wires(wires), *plain, *join_connections(roles)]
     for number, slave in enumerate(slaves):
         sent = [place for link in connections if link.source == number for place in link.source_places.tolist()]
         judged = [slave.outputs.index[name] for name in JUDGED.get(slave.name, ()) if name in slave.outputs.index]
@@ -124,12 +124,12 @@ def _with_roles(
             if owner not in [slave.name for slave in slaves]:
                 slaves.append(Listener(owner))
             number = [slave.name for slave in slaves].index(owner)
-            targets.append(_told(slaves[number], number, signal, feed, file, key))
+            targets.append(_role_input(slaves[number], number, signal, feed, file, key))
         found[key] = (feed, targets)
     return slaves, found
 
 
-def _told(slave: Slave, number: int, signal: str, feed: Feed, file: str, key: str) -> Pin:
+def _role_input(slave: Slave, number: int, signal: str, feed: Feed, file: str, key: str) -> Pin:
     if signal in slave.outputs.index:
         text = f"{slave.name} has an output {signal}, which plays this role already; call the slave otherwise"
         raise BadInput(text, file=file or None, key=key)

@@ -152,10 +152,10 @@ class Feeder:
         if feed.into is not None or feed.out_of is not None:
             return [self._pose(feed, sources, targets, key)]
         if feed.map is not None:
-            return [self._mapped(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
-        return [self._scaled(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
+            return [self._map_connection(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
+        return [self._scale_connection(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
 
-    def _scaled(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+    def _scale_connection(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
         factor, offset = self._factor(source, target, key) if feed.units else (1.0, 0.0)
         gain = source.sign * target.sign * feed.factor
         whole = gain * factor, feed.offset * factor + offset
@@ -171,7 +171,7 @@ class Feeder:
             ends = f"{source.name} is in {source.unit}, {target.name} in {target.unit}"
             raise self._wrong(f"{ends}: {error}", key) from None
 
-    def _mapped(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+    def _map_connection(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
         assert feed.map is not None
         named = target.variable._replace(name=f"{key}.map")
         values = {
@@ -200,7 +200,7 @@ class Feeder:
         return BadInput(text, file=self._file, key=key)
 
 
-def joined(found: list[Connection]) -> list[Connection]:
+def join_connections(found: list[Connection]) -> list[Connection]:
     """Return the connections, those of equal slaves that need no conversion as one."""
     plain: dict[tuple[int, int], list[Connection]] = {}
     for item in found:

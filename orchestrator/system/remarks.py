@@ -44,8 +44,8 @@ def remarks(system: Assembled, ending: EndCondition | None, ignored: Sequence[st
         for number, slave in enumerate(slaves)
         for text in (
             *_units(number, system),
-            *_unsupported(slave),
-            *_unconnected_inputs(number, system),
+            *_type_remarks(slave),
+            *_open_inputs(number, system),
             *_unread_outputs(number, system),
             *_missing(slave.name, slave, ending),
         )
@@ -63,12 +63,12 @@ def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition
     needed = dict(NEEDED.get(name, {}))
     if name == owner and mode not in has:
         needed = {
-            mode: f"{_done(ending)} of it says that the task is done and, once the car stands, ends the run"
+            mode: f"{_success_text(ending)} of it says that the task is done and, once the car stands, ends the run"
         } | needed
     return {item: loss for item, loss in needed.items() if item not in has}
 
 
-def _done(ending: EndCondition) -> str:
+def _success_text(ending: EndCondition) -> str:
     try:
         return ending.text(ending.succeeded[0])
     except BadInput:
@@ -117,7 +117,7 @@ def _others_units(number: int, system: Assembled) -> dict[str, str]:
     return found
 
 
-def _unsupported(slave: Slave) -> list[str]:
+def _type_remarks(slave: Slave) -> list[str]:
     """Return which variables are of types that are not supported here."""
     names = [name for ports in (slave.inputs, slave.outputs, slave.parameters) for name in ports.unsupported]
     return [f"{slave.name} has variables of types that are not supported here: {_few(names)}"] if names else []
@@ -146,19 +146,19 @@ def not_fed(number: int, system: Assembled) -> dict[str, str]:
     return {name: suggestion(name, spare) for name in unfed}
 
 
-def _unconnected_inputs(number: int, system: Assembled) -> list[str]:
+def _open_inputs(number: int, system: Assembled) -> list[str]:
     """Return one line on the inputs that nothing feeds; a note where all of them are optional inputs of our models."""
     slave, names = system.slaves[number], not_fed(number, system)
     if not names:
         return []
-    is_optional = slave.name in MODELS and not any(names.values()) and not set(names) & _needed_inputs(slave.name)
+    is_optional = slave.name in MODELS and not any(names.values()) and not set(names) & _mandatory_inputs(slave.name)
     known = {item.name for item in variables(MODELS[slave.name].inputs)} if slave.name in MODELS else set()
     kind = NOTE if is_optional and set(names) <= known else ""
     listed = _few([f"{name} ({meant.removeprefix('; ')})" if meant else name for name, meant in names.items()])
     return [f"{kind}unconnected inputs of {slave.name} (start values are used): {listed}"]
 
 
-def _needed_inputs(name: str) -> set[str]:
+def _mandatory_inputs(name: str) -> set[str]:
     return set(NEEDED_INPUTS.get(name, ()))
 
 

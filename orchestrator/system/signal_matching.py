@@ -173,7 +173,7 @@ def words(name: str) -> frozenset[str]:
     return frozenset(found) - FILLER
 
 
-def declared_unit(variable: Variable, ports: Ports) -> str:
+def unit_of(variable: Variable, ports: Ports) -> str:
     """Return the unit of a variable: its FMU's, else what its name or its description ends with; empty: not known."""
     if variable.kind is not float:
         return "1"
@@ -184,7 +184,7 @@ def declared_unit(variable: Variable, ports: Ports) -> str:
 
 
 def _units_fit(target: Variable, targets: Ports, source: Variable, sources: Ports) -> bool:
-    wanted, given = declared_unit(target, targets), declared_unit(source, sources)
+    wanted, given = unit_of(target, targets), unit_of(source, sources)
     if not wanted or not given or (target.kind is not float and source.kind is not float):
         return True
     first, second = scale_of(wanted, targets.scales), scale_of(given, sources.scales)
@@ -209,9 +209,9 @@ def _suggestion(
     units: list[str] = []
     for item, side, other, its in ((target, targets, source, sources), (source, sources, target, targets)):
         is_open = item.kind is float and item.name in side.ports.unsaid
-        unit = declared_unit(item, side.ports) or declared_unit(other, its.ports)
+        unit = unit_of(item, side.ports) or unit_of(other, its.ports)
         units.append(unit if is_open and unit not in ("", "1") else "")
-        if is_open and not declared_unit(item, side.ports):
+        if is_open and not unit_of(item, side.ports):
             notes.append(f"no unit is declared, {unit or 'SI'} is assumed")
     if mirrored[0] != mirrored[1]:
         notes.append("it counts the other way round, as it says")

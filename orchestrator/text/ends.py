@@ -23,7 +23,7 @@ SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM") if hasat
 
 
 @contextmanager
-def asked_to_end(act: Callable[[], None]) -> Iterator[None]:
+def stop_on_signal(act: Callable[[], None]) -> Iterator[None]:
     """Call ``act`` on the first SIGINT or SIGTERM, so that no exception lands inside an FMU's code; end at the second.
 
     Elsewhere than on the main thread, to which signals come, nothing is changed.
@@ -49,7 +49,7 @@ def asked_to_end(act: Callable[[], None]) -> Iterator[None]:
 
 
 @contextmanager
-def ended_in_time() -> Iterator[threading.Event]:
+def interrupt_within_limit() -> Iterator[threading.Event]:
     """Let signals raise ``KeyboardInterrupt``, and end the program at once if that takes too long.
 
     Gives what is set by a signal: code in C may make another exception of the interrupt.
@@ -68,7 +68,7 @@ def ended_in_time() -> Iterator[threading.Event]:
     before = signal.set_wakeup_fd(there.fileno(), warn_on_full_buffer=False)
     watch.start()
     try:
-        with asked_to_end(interrupt):
+        with stop_on_signal(interrupt):
             yield interrupted
     finally:
         signal.set_wakeup_fd(before)

@@ -114,13 +114,13 @@ MOST_LETTERS = 100
 """A word longer than this is like no other."""
 
 
-def renamed_value(key: str, value: object) -> str:
+def rename_hint(key: str, value: object) -> str:
     """Return ``; it is called X now`` for a value of ``faults[1].kind`` or the like that was in use before."""
     now = VALUES.get(key.rpartition(".")[2], {}).get(str(value), "")
     return f"; it is called {now} now{MIGRATE}" if now else ""
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value for a message: as Python writes it, cut where it is long."""
     text = repr(value)
     return text if len(text) <= MOST_LETTERS else f"{text[:60]}... ({len(text)} letters)"

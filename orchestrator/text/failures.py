@@ -22,7 +22,7 @@ from orchestrator.text.errors import (
     BadInput,
     NotRunError,
     RunError,
-    shown,
+    format_value,
 )
 
 REPORT = "please file a bug with that file at the apa-cosim repository"
@@ -39,7 +39,7 @@ WORDS = {
 }
 
 
-def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
+def exit_code_and_message(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     """Return the exit code for an error and the line that is said of it."""
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "interrupted"
@@ -50,7 +50,10 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     if isinstance(error, OSError):
         return BAD_INPUT, place_of(error)
     if isinstance(error, UnicodeEncodeError):
-        return BAD_INPUT, f"{shown(error.object)}: contains characters that cannot be encoded, and cannot be written"
+        return (
+            BAD_INPUT,
+            f"{format_value(error.object)}: contains characters that cannot be encoded, and cannot be written",
+        )
     if isinstance(error, MemoryError):
         return BAD_INPUT, SCARCE_RESOURCES
     if isinstance(error, ModuleNotFoundError):

@@ -10,7 +10,7 @@ from orchestrator.text.errors import BadInput
 
 
 @contextmanager
-def owned(folder: Path) -> Iterator[None]:
+def lock_folder(folder: Path) -> Iterator[None]:
     """Make ``folder`` and let no other command write there until this is over, or the process dies.
 
     What a killed command left unfinished there, its log aside, is removed. Raises ``BadInput`` if it is in use.
@@ -27,7 +27,7 @@ def owned(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def owned_with(source: Path, target: Path) -> AbstractContextManager[None]:
+def lock_with(source: Path, target: Path) -> AbstractContextManager[None]:
     """Own the folder of ``target`` if ``source`` is in it too: it may not change while one is made of the other."""
     beside = source.is_file() and source.parent.resolve() == target.parent.resolve()
-    return owned(target.parent) if beside else nullcontext()
+    return lock_folder(target.parent) if beside else nullcontext()

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BeforeValidator, Field
 
 from modelkit.variables import Variable
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, format_value, suggestion
 
 RAD_PER_DEGREE = math.pi / 180.0
 NS_PER_SECOND = 1_000_000_000
@@ -64,24 +64,26 @@ def number(value: object, unit: str, *, file: object = None, key: str | None = N
     """
     result = _in_si(value, unit, file, key)
     if not any_value and not abs(result) <= MAX_MAGNITUDE:
-        raise BadInput(f"{shown(value)} is not a number that anything here can have", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is not a number that anything here can have", file=file, key=key)
     return result
 
 
 def _in_si(value: object, unit: str, file: object, key: str | None) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise BadInput(f"{shown(value)} is not a number [{unit}]", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is not a number [{unit}]", file=file, key=key)
     if not isinstance(value, str):
         return float(value) if isinstance(value, float) or abs(value) <= MAX_MAGNITUDE else math.inf
     match = _parts(value)
     if match is None:
-        raise BadInput(f"{shown(value)} is not a number, expected for example {_example(unit)}", file=file, key=key)
+        raise BadInput(
+            f"{format_value(value)} is not a number, expected for example {_example(unit)}", file=file, key=key
+        )
     magnitude, written = float(match[1]), unit_symbol(match[2]) if match[2] else ""
     if written in ("", unit) or match[2] == unit or written == unit_symbol(unit):
         return magnitude
     target, factor = FACTORS.get(written, ("", 0.0))
     if target != unit:
-        raise BadInput(f"{shown(value)} is in {written!r}, expected {_example(unit)}", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is in {written!r}, expected {_example(unit)}", file=file, key=key)
     return magnitude * factor
 
 
@@ -96,7 +98,7 @@ def _parts(text: str) -> "re.Match[str] | None":
     return QUANTITY.fullmatch(text) if len(text) <= MOST_LETTERS else None
 
 
-def measured(value: object, *, file: object = None, key: str | None = None) -> tuple[float, str | None]:
+def parse_quantity(value: object, *, file: object = None, key: str | None = None) -> tuple[float, str | None]:
     """Return ``value`` in SI and the SI unit its text has (None if it has none). Raises ``BadInput``."""
     match = _parts(value) if isinstance(value, str) else None
     if match is None or not match[2]:
@@ -111,7 +113,7 @@ def text_or_scalar(value: object, variable: Variable, *, file: object = None) ->
     if variable.kind is not str:
         return scalar(value, variable, file=file)
     if not isinstance(value, str):
-        text = f"{shown(value)} is no text, which this is; write it in quotes: {str(value)!r}"
+        text = f"{format_value(value)} is no text, which this is; write it in quotes: {str(value)!r}"
         raise BadInput(text, file=file, key=variable.name)
     return value
 
@@ -131,7 +133,9 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
     low, high = variable.signal.low, variable.signal.high
     if not low <= result <= high:
         raise BadInput(
-            f"{shown(value)} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key
+            f"{format_value(value)} is out of range, expected {low:g} to {high:g} {variable.signal.unit}",
+            file=file,
+            key=key,
         )
     return result
 
@@ -139,7 +143,7 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
 def _seconds(value: object) -> float | None:
     seconds = None if value is None else number(value, "s")
     if seconds is not None and not 0.0 <= seconds <= MAX_TIME:
-        raise BadInput(f"{shown(value)} is not a time from 0 to {MAX_TIME:g} s")
+        raise BadInput(f"{format_value(value)} is not a time from 0 to {MAX_TIME:g} s")
     return seconds
 
 
@@ -155,7 +159,7 @@ def _within(most: float, unit: str) -> BeforeValidator:
     def read(value: object) -> float:
         found = number(value, unit)
         if abs(found) > most:
-            raise BadInput(f"{shown(value)} is out of range, expected {-most:g} to {most:g} {unit}")
+            raise BadInput(f"{format_value(value)} is out of range, expected {-most:g} to {most:g} {unit}")
         return found
 
     return BeforeValidator(read)
@@ -175,7 +179,7 @@ def _boolean(value: object, file: object, key: str) -> bool:
     words = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no": False, "off": False, "0": False}
     text = str(value).strip().lower()
     if text not in words:
-        raise BadInput(f"{shown(value)} is neither true nor false", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is neither true nor false", file=file, key=key)
     return words[text]
 
 
@@ -186,14 +190,14 @@ def _integer(value: object, variable: Variable, file: object) -> int:
         word = value.strip().lower().replace("-", "_").replace(" ", "_")
         if word not in names:
             close = suggestion(word, names)
-            raise BadInput(f"{shown(value)} is none of {', '.join(names)}{close}", file=file, key=variable.name)
+            raise BadInput(f"{format_value(value)} is none of {', '.join(names)}{close}", file=file, key=variable.name)
         return names[word]
     exact = number(value, variable.signal.unit, file=file, key=variable.name)
     if not math.isfinite(exact) or exact != round(exact):
-        raise BadInput(f"{shown(value)} is not a whole number", file=file, key=variable.name)
+        raise BadInput(f"{format_value(value)} is not a whole number", file=file, key=variable.name)
     if states is not None and int(exact) not in {int(member) for member in states}:
         known = ", ".join(f"{int(member)} {member.name.lower()}" for member in states)
-        raise BadInput(f"{shown(value)} is none of {known}", file=file, key=variable.name)
+        raise BadInput(f"{format_value(value)} is none of {known}", file=file, key=variable.name)
     return int(exact)
 
 

@@ -83,7 +83,7 @@ API = {"must_be": "assert_outcome", "must_meet": "assert_requirements"}
 DOTTED_NAMES = SCENARIO_KEYS | VARIABLES | METRICS
 
 
-def renamed(path: str) -> str:
+def current_name(path: str) -> str:
     """Return a dotted name as it is called now; itself where it, and all that it is in, was never called otherwise.
 
     Old and new names have equally many parts.
@@ -102,8 +102,8 @@ def new_name(word: str, prefix: str = "") -> str:
     A name without its owner is found if one old name ends with it.
     """
     for full in (prefix + word, word):
-        if renamed(full) != full:
-            return renamed(full)
+        if current_name(full) != full:
+            return current_name(full)
     if word in OPTIONS:
         return OPTIONS[word]
     ends = {new for old, new in DOTTED_NAMES.items() if old.endswith(f".{word}")}

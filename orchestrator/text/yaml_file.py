@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from orchestrator.text.errors import LINES, BadInput, renamed_value, shown, suggestion, suggestion_or_choices
+from orchestrator.text.errors import LINES, BadInput, format_value, rename_hint, suggestion, suggestion_or_choices
 
 MOST_BYTES = 500_000
 MOST_NODES = 50_000
@@ -48,15 +48,15 @@ class _BoundedComposer(yaml.composer.Composer, yaml.constructor.SafeConstructor)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor in self.anchors and event.anchor not in self._sizes:
                 raise _mistake(f"*{event.anchor} stands within itself", event)
-            self._counted(self._sizes.get(str(event.anchor), 0), event)
+            self._check_count(self._sizes.get(str(event.anchor), 0), event)
             return super().compose_node(parent, index)
         tag = getattr(event, "tag", None)
         if tag not in (None, "!", TEXT):
-            raise _mistake(f"the tag {shown(tag)} has no meaning here", event)
+            raise _mistake(f"the tag {format_value(tag)} has no meaning here", event)
         before, self._depth = self._count, self._depth + 1
         if self._depth > MAX_NESTING:
             raise _mistake(f"nested deeper than {MAX_NESTING}", event)
-        self._counted(1, event)
+        self._check_count(1, event)
         node = super().compose_node(parent, index)
         self._depth -= 1
         if event.anchor is not None:
@@ -70,23 +70,23 @@ class _BoundedComposer(yaml.composer.Composer, yaml.constructor.SafeConstructor)
                 raise _mistake("expected a word as key", key_node)
             key = self.construct_object(key_node, deep=True)
             if key in seen:
-                raise _mistake(f"key {shown(key)} is written twice", key_node)
+                raise _mistake(f"key {format_value(key)} is written twice", key_node)
             seen.add(key)
         return super().construct_mapping(node, deep)
 
     def construct_scalar(self, node: Any) -> Any:
         if node.tag != TEXT and len(str(node.value)) > MOST_DIGITS:
-            raise _mistake(f"{shown(node.value)} has more digits than any number here", node)
+            raise _mistake(f"{format_value(node.value)} has more digits than any number here", node)
         if node.tag in NUMBERS and OTHER_BASE.fullmatch(str(node.value)):
             raise _mistake(
                 f"{node.value} is a number of base 8 or 60 for YAML; write it in base 10, or in quotes", node
             )
         value: Any = super().construct_scalar(node)
         if isinstance(value, str) and not _is_text(value):
-            raise _mistake(f"{shown(value)} is no text that can be written as UTF-8", node)
+            raise _mistake(f"{format_value(value)} is no text that can be written as UTF-8", node)
         return value
 
-    def _counted(self, count: int, event: Any) -> None:
+    def _check_count(self, count: int, event: Any) -> None:
         self._count += count
         if self._count > MOST_NODES:
             raise _mistake(f"more than {MOST_NODES} values, aliases counted as what they stand for", event)
@@ -135,7 +135,7 @@ def read_yaml(path: Path) -> Any:
     except UnicodeDecodeError as error:
         raise BadInput("is not UTF-8 text", file=path) from error
     try:
-        return _parsed(text, str(path))
+        return _parse(text, str(path))
     except (yaml.YAMLError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         line = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
@@ -146,16 +146,18 @@ def read_yaml(path: Path) -> Any:
 def read_value(text: str, key: str) -> Any:
     """Return what ``text`` on the command line means as YAML; itself if it is none. Raises ``BadInput``."""
     if not _is_text(text) or not _is_text(key):
-        raise BadInput(f"{shown(text)} is no text that can be written as UTF-8", file="--set", key=ascii(key)[1:-1])
+        raise BadInput(
+            f"{format_value(text)} is no text that can be written as UTF-8", file="--set", key=ascii(key)[1:-1]
+        )
     if len(text) > MOST_BYTES // 100:
         raise BadInput(f"{len(text)} letters are more than a value can have", file="--set", key=key)
     try:
-        return _parsed(text)
+        return _parse(text)
     except (yaml.YAMLError, ValueError):
         return text
 
 
-def _parsed(text: str, file: str = "") -> Any:
+def _parse(text: str, file: str = "") -> Any:
     """Return the only document in ``text``, and note where the keys of ``file`` stand.
 
     libyaml says a mistake in words of its own: what it refuses is read again in Python, which says what to write.
@@ -212,8 +214,12 @@ def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
     if first["type"] == "missing":
         return BadInput("is missing", file=file, key=key)
     cause = first.get("ctx", {}).get("error")
-    text = str(cause) if isinstance(cause, BadInput) else f"{shown(value)}: {first['msg'][0].lower()}{first['msg'][1:]}"
-    return BadInput(text + renamed_value(key, value), file=file, key=key)
+    text = (
+        str(cause)
+        if isinstance(cause, BadInput)
+        else f"{format_value(value)}: {first['msg'][0].lower()}{first['msg'][1:]}"
+    )
+    return BadInput(text + rename_hint(key, value), file=file, key=key)
 
 
 def place_in(error: ValidationError) -> str:

@@ -17,7 +17,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import CarOutline, described, kerbs, things
+from orchestrator.verdict.geometry import CarOutline, kerbs, things, vehicle_parameters
 from orchestrator.verdict.polygons import TOUCH_DEPTH, polygon_clearances
 
 CLEARANCE, SPEED, VEHICLE = "vehicle.clearance", "vehicle.speed", "vehicle"
@@ -109,7 +109,7 @@ def depth(nearest: float) -> float:
 
 def clearance_parts(recording: Recording, scenario: Scenario) -> Iterator[tuple[Recording, Clearances]]:
     """Yield a run part by part with the distances of the outline to what stands in ``scenario``."""
-    parameters = described(scenario, recording.parameters_of(VEHICLE))
+    parameters = vehicle_parameters(scenario, recording.parameters_of(VEHICLE))
     is_taken = _is_output_taken(recording)
     for part, _, _ in recording.parts():
         scene = _to_scene(part, parameters, is_taken)

@@ -101,7 +101,7 @@ def place(points: Array, x: float, y: float, heading: float) -> Array:
     return np.column_stack([x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]])
 
 
-def described(scenario: "Scenario", own: Mapping[str, float]) -> dict[str, float]:
+def vehicle_parameters(scenario: "Scenario", own: Mapping[str, float]) -> dict[str, float]:
     """Return the vehicle's parameters: its ``own``, and the scenario's where an FMU has none of that name."""
     return {**scenario.vehicle, **own}
 
@@ -179,7 +179,9 @@ def sample_path(
             return _quintics(values, name.removesuffix(".side"), side, spacing)
     pieces = [(length, k, k) for length, k in _fields(values, "path.segments", ("length", "curvature"))]
     if any(length > 0.0 for length, _, _ in pieces):
-        return _driven(pose_at(values, "path.start"), -1.0, [(length, -k, -k) for length, k, _ in pieces], spacing)
+        return _trace_pieces(
+            pose_at(values, "path.start"), -1.0, [(length, -k, -k) for length, k, _ in pieces], spacing
+        )
     for name in values:
         if name.endswith("points[1].x"):
             points = np.array(_fields(values, name.removesuffix("[1].x"), ("x", "y")))
@@ -190,10 +192,10 @@ def sample_path(
             prefix = name.removesuffix(".direction")
             moves = _fields(values, f"{prefix}.pieces", ("length", "start_curvature", "end_curvature"))
             turned = [(length, direction * k0, direction * k1) for length, k0, k1 in moves]
-            return _driven(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
+            return _trace_pieces(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
     if values.get(ON_ROAD, 0.0) > 0.0:
         road = _fields(parameters or {}, "preview.road", ("length", "curvature"))
-        return _driven((0.0, 0.0, 0.0), 1.0, [(length, k, k) for length, k in road], max(spacing, 0.5))
+        return _trace_pieces((0.0, 0.0, 0.0), 1.0, [(length, k, k) for length, k in road], max(spacing, 0.5))
     return np.empty((0, 2))
 
 
@@ -240,7 +242,7 @@ def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) ->
 MOST_POINTS = 10_000.0
 
 
-def _driven(
+def _trace_pieces(
     start: tuple[float, float, float], direction: float, pieces: Sequence[tuple[float, ...]], spacing: float
 ) -> Array:
     """Return points along pieces (length, rate of turning per metre at the start, at the end) from ``start``.

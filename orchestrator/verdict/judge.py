@@ -69,7 +69,7 @@ def judge(requirements: list[Requirement], recording: Recording, facts: Facts, f
 
 def _check(item: Requirement, recording: Recording, numbers: dict[str, float], file: str) -> Check:
     where = f"{item.id}: {item.signal}"
-    if _unmeasured(item, recording, numbers):
+    if _lacks_signals(item, recording, numbers):
         return _not_judged(item)
     if item.signal in recording.signals:
         unit = recording.variables[item.signal].signal.unit
@@ -95,10 +95,10 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
     return _verdict(item, worst, limit, unit, states)
 
 
-def _unmeasured(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
+def _lacks_signals(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
     """Return whether a requirement needs what our models put out, but the FMUs of this run do not."""
     named = [item.signal, *([item.window.after.signal] if item.window is not None and item.window.after else [])]
-    missing = any(name not in recording.signals and name in _known_signals() for name in named)
+    missing = any(name not in recording.signals and name in _signal_names() for name in named)
     phase = item.window is not None and bool(item.window.phase) and not _has_phases(item.window.phase, recording)
     number = item.signal in numbers and not all(name in recording.signals for name in signals_of(item.signal))
     return missing or phase or number
@@ -113,7 +113,7 @@ def _has_phases(names: list[str], recording: Recording) -> bool:
 
 
 @cache
-def _known_signals() -> frozenset[str]:
+def _signal_names() -> frozenset[str]:
     return frozenset(f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.outputs))
 
 

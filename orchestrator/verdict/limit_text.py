@@ -13,7 +13,7 @@ def limit_text(check: Check) -> str:
     return f"{CONDITIONS[check.condition].sign} {check.limit_name or readable(check.limit, check.unit)}"
 
 
-def required_text(item: Requirement) -> str:
+def requirement_text(item: Requirement) -> str:
     """Return what a requirement asks for, before any run."""
     limit = item.limit
     return f"{CONDITIONS[item.condition].sign} {limit if isinstance(limit, str) else readable(limit, item.unit or '1')}"

@@ -21,7 +21,7 @@ class Logged(NamedTuple):
     """What the log does not tell and was taken from elsewhere; empty if it tells all."""
 
 
-def logged(recording: Recording, file: str = "", name: str = "unnamed") -> Logged:
+def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed") -> Logged:
     """Return the scenario of ``recording``, which was read from ``file``. Raises ``BadInput`` if it has no meaning.
 
     Logs of old versions, and of other tools, carry no target or no scenario at all: the pose that the controller

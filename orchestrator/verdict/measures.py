@@ -32,17 +32,17 @@ class Measure(NamedTuple):
     """The instants that count; None: all."""
 
 
-def measured(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
+def measure_recording(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
     """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
     found = Gathered(measure.how)
     for part in recording.parts():
-        values = _counted(measure, part.recording)
+        values = _samples_in_window(measure, part.recording)
         if values is not None and len(values):
             found.add(values)
     return missing if found.value is None else found.value
 
 
-def _counted(measure: Measure, recording: Recording) -> Array | None:
+def _samples_in_window(measure: Measure, recording: Recording) -> Array | None:
     """Return the values that count; None if there is no such signal."""
     values = recording.t if measure.how == "time" else recording.signals.get(measure.signal)
     if values is not None and measure.when is not None:

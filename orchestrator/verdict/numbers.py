@@ -12,8 +12,8 @@ from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.verdict.comfort import DrySteering, PeakJerk
 from orchestrator.verdict.contact import VEHICLE, contact_facts, has_scene
-from orchestrator.verdict.geometry import described
-from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.geometry import vehicle_parameters
+from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.standing import in_frames, kerb_distances, outline_margin
 from orchestrator.verdict.truth import Truth, truth_of
 
@@ -98,12 +98,12 @@ class Facts(NamedTuple):
 def facts_of(recording: Recording, scenario: Scenario) -> Facts:
     """Return the numbers of one recorded run of ``scenario``."""
     found = {
-        measure: np.array([measured(measure, recording)])
+        measure: np.array([measure_recording(measure, recording)])
         for measure in MEASURES
         if recording.count and measure.signal in recording.signals
     }
     duration = np.array([recording.duration])
-    truth = truth_of(scenario, described(scenario, recording.parameters_of(VEHICLE)))
+    truth = truth_of(scenario, vehicle_parameters(scenario, recording.parameters_of(VEHICLE)))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
     has = {name for name, rows in truth.has().items() if rows[0]}
     has |= things_of(scenario, recording.parameters_of(VEHICLE))
@@ -113,7 +113,7 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
 def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
     """Return which of ``obstacles`` and ``scene`` (anything at all) a run has; ``vehicle``: its own parameters."""
     polygons = {"obstacles"} if scenario.obstacles else set[str]()
-    return polygons | ({"scene"} if polygons or has_scene(described(scenario, vehicle)) else set())
+    return polygons | ({"scene"} if polygons or has_scene(vehicle_parameters(scenario, vehicle)) else set())
 
 
 def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import states_of
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import CONTACT_FREE, MISSED, SUCCESS, Outcome, Scenario
 from orchestrator.verdict.truth import Bools
 
@@ -14,7 +14,7 @@ BEYOND = "beyond its limit: "
 """Begins why a run has not done its task whose controller says so, but which misses requirements."""
 
 
-CONTACT_ID = shipped_requirements(CONTACT_FREE)[0].id
+CONTACT_ID = library_requirements(CONTACT_FREE)[0].id
 
 
 class Ends(NamedTuple):

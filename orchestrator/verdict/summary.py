@@ -16,9 +16,9 @@ from orchestrator.scenario.scenario import DONE, PENETRATION, Outcome, Scenario
 from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.verdict.contact import VEHICLE, contact_facts
 from orchestrator.verdict.frame import in_frame, pose_of
-from orchestrator.verdict.geometry import described
+from orchestrator.verdict.geometry import vehicle_parameters
 from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.outcome import Asked, Ends, outcomes, state_name
 from orchestrator.verdict.standing import beyond_ends
@@ -205,7 +205,7 @@ class Summary(_Part):
 def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: str = "") -> Summary:
     """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist.
 
-    ``note``: what its log does not tell, see :func:`orchestrator.verdict.logged.logged`.
+    ``note``: what its log does not tell, see :func:`orchestrator.verdict.logged.read_logged_run`.
     """
     facts = facts_of(recording, scenario)
     numbers, checks = facts.numbers, judge(scenario.requirements, recording, facts, scenario.file)
@@ -285,7 +285,7 @@ def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> t
     end = str(recording.info.get("end", {}).get("reason", ""))
     broken = end if end == "interrupted" or end.startswith("error") else ""
     signals = (scenario.stop_condition.signal, scenario.stop_condition.reason)
-    last = (np.array([measured(Measure("last", name), recording)]) for name in (*signals, SPEED))
+    last = (np.array([measure_recording(Measure("last", name), recording)]) for name in (*signals, SPEED))
     asked = [
         Asked(check.id, np.array([not check.passed]), np.array([math.isnan(check.value)]))
         for check in checks
@@ -313,7 +313,7 @@ def standing_of(recording: Recording, scenario: Scenario, numbers: dict[str, flo
     pose = np.array([[numbers[f"final.{axis}"] for axis in ("x", "y", "heading")]])
     said = touched
     if scenario.slot is not None and np.isfinite(pose).all():
-        truth = truth_of(scenario, described(scenario, recording.parameters_of(VEHICLE)))
+        truth = truth_of(scenario, vehicle_parameters(scenario, recording.parameters_of(VEHICLE)))
         ends = zip(("front", "rear"), beyond_ends(pose, truth.slots, truth.cars), strict=True)
         said += [
             f"outline {100.0 * float(over[0]):.1f} cm beyond the slot's {end} boundary"

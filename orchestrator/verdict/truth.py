@@ -35,7 +35,7 @@ class Truth(NamedTuple):
     cars: Array
     """(n, 4) front, rear, half width, wheelbase."""
 
-    def repeated(self, count: int) -> "Truth":
+    def repeat(self, count: int) -> "Truth":
         """Return the truth of ``count`` runs in which all is as in this one."""
         return Truth(*(np.repeat(part, count, axis=0) for part in self))
 
@@ -57,7 +57,7 @@ def truth_of(scenario: Scenario, vehicle: Mapping[str, float]) -> Truth:
     return Truth(np.array([target]), np.array([slot]), np.array(beside).reshape(1, -1, 4), np.array([car]))
 
 
-def joined(parts: list[Truth]) -> Truth:
+def join_truths(parts: list[Truth]) -> Truth:
     """Return the truths of several runs as one."""
     most = max((part.kerbs.shape[1] for part in parts), default=0)
     missing = [((0, 0), (0, most - part.kerbs.shape[1]), (0, 0)) for part in parts]

@@ -17,7 +17,7 @@ class Looking:
     def __init__(self, slaves: list[InProcessSlave], look: Look) -> None:
         self._slaves, self._look = slaves, look
 
-    def reached(self, t_ns: int) -> str:
+    def stop_reason(self, t_ns: int) -> str:
         vehicle, controller = (slave.output for slave in self._slaves)
         return "seen" if self._look(t_ns, vehicle, controller) else ""
 

@@ -67,7 +67,7 @@ def law(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 def missing(branches: Any) -> Any:
-    return {branch.text: branch.missing for branch in branches.found() if branch.missing}
+    return {branch.text: branch.missing for branch in branches.list_branches() if branch.missing}
 
 
 def test_both_outcomes_of_each_decision_and_condition_are_counted(law: Any) -> None:
@@ -78,7 +78,7 @@ def test_both_outcomes_of_each_decision_and_condition_are_counted(law: Any) -> N
         assert module.even((2, 4)) == [2, 4]
         assert (module.first(3, 0), module.first(3, 4)) == (3, 3)
         assert module.Point(1.0).is_right is True
-        found = {branch.text: (branch.was_true, branch.was_false) for branch in branches.found()}
+        found = {branch.text: (branch.was_true, branch.was_false) for branch in branches.list_branches()}
     assert found["x > 0.0"] == (2, 1)
     assert found["not wide"] == (1, 1)
     assert found["x > 0.0 and (not wide)"] == (1, 2)
@@ -90,7 +90,7 @@ def test_both_outcomes_of_each_decision_and_condition_are_counted(law: Any) -> N
         "y": "never decided",
         "self.x > 0.0": "never false",
     }
-    assert 0.0 < branch_share(branches.found()) < 1.0
+    assert 0.0 < branch_share(branches.list_branches()) < 1.0
 
 
 def test_functions_are_what_they_were_afterwards(law: Any) -> None:
@@ -103,13 +103,13 @@ def test_functions_are_what_they_were_afterwards(law: Any) -> None:
     law.sign(-1.0, False)
     assert {name: function.__code__ for name, function in functions.items()} == codes
     assert "__seen__" not in vars(module)
-    assert branches.found() == []
+    assert branches.list_branches() == []
 
 
 def test_what_did_not_run_is_not_counted() -> None:
     with watching([controller_fmu]) as branches:
-        assert branches.found() == []
-        assert branch_share(branches.found()) == 1.0
+        assert branches.list_branches() == []
+        assert branch_share(branches.list_branches()) == 1.0
 
 
 def test_a_run_says_how_far_it_went_into_the_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ import pytest
 import controller_fmu
 from modelkit.model import Chart
 from orchestrator.cli import main
-from orchestrator.coverage.covered import covered, share
+from orchestrator.coverage.covered import chart_coverage, share
 from orchestrator.coverage.tracer import decider, name_of, tracing
 from orchestrator.scenario.wiring.modes import ModeList
 from tests.orchestrator import c_fmus
@@ -35,23 +35,23 @@ LAMP = Chart("lamp", Lamp, Guard, ((-1, 0, 2), (0, 1, 1), (1, 1, 0)))
 
 
 def counts(*decided: Any) -> Any:
-    return covered(LAMP, Counter(decided))
+    return chart_coverage(LAMP, Counter(decided))
 
 
 def test_a_row_decides_unless_one_above_it_was_taken() -> None:
     both, switched = 0b11, 0b10
     found = counts((0, both), (0, switched), (0, 0), (1, 0))
-    assert [(row.source, row.taken, row.refused) for row in found.rows] == [
+    assert [(row.source, row.count_taken, row.refused) for row in found.rows] == [
         ("any state", 1, 3),
         ("OFF", 1, 1),
         ("ON", 0, 1),
     ]
-    assert (found.visited, found.taken, found.outcomes) == (3, 2, 5)
+    assert (found.count_visited, found.count_taken, found.outcomes) == (3, 2, 5)
     assert share([found]) == pytest.approx(2 / 3)
 
 
 def test_a_row_for_any_state_does_not_leave_an_end() -> None:
-    assert [row.taken + row.refused for row in counts((2, 0b11)).rows] == [0, 0, 0]
+    assert [row.count_taken + row.refused for row in counts((2, 0b11)).rows] == [0, 0, 0]
 
 
 def test_every_chart_has_one_function_that_decides() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.coverage.covered import ChartCovered, covered
+from orchestrator.coverage.covered import ChartCoverage, chart_coverage
 from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.scenario.models import MODELS, apart_models
 
@@ -71,7 +71,7 @@ CAUSES = {"TAKEN_OVER": ("driver_takeover", "true"), "FAILED": ("vehicle_fault",
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> list[ChartCovered]:
+def found(tmp_path_factory: pytest.TempPathFactory) -> list[ChartCoverage]:
     folder = tmp_path_factory.mktemp("every")
     own = [str(file) for file in OWN]
     for before, at in VALET_STEPS.items():
@@ -84,20 +84,22 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> list[ChartCovered]:
     charts = [chart for model in (*MODELS.values(), *apart.values()) for chart in model.all_charts()]
     with tracing(charts) as seen:
         assert main(["test", *SHIPPED, *own, "--fmus", "none", "--out", str(folder / "out")]) == 0
-    return [covered(chart, seen[name_of(chart)]) for chart in charts]
+    return [chart_coverage(chart, seen[name_of(chart)]) for chart in charts]
 
 
-def test_every_transition_is_taken_but_those_with_a_reason(found: list[ChartCovered]) -> None:
-    missing = {(short(chart.name), row.source, row.guard) for chart in found for row in chart.rows if not row.taken}
+def test_every_transition_is_taken_but_those_with_a_reason(found: list[ChartCoverage]) -> None:
+    missing = {
+        (short(chart.name), row.source, row.guard) for chart in found for row in chart.rows if not row.count_taken
+    }
     assert missing == set(NEVER_TAKEN)
 
 
-def test_every_guard_decides_against_its_row_too_but_those_with_a_reason(found: list[ChartCovered]) -> None:
+def test_every_guard_decides_against_its_row_too_but_those_with_a_reason(found: list[ChartCoverage]) -> None:
     missing = {(short(chart.name), row.source, row.guard) for chart in found for row in chart.rows if not row.refused}
     assert missing == set(NEVER_REFUSED)
 
 
-def test_every_state_is_visited(found: list[ChartCovered]) -> None:
+def test_every_state_is_visited(found: list[ChartCoverage]) -> None:
     assert len(found) == 5
     never = {(short(chart.name), name) for chart in found for name, count in chart.states.items() if not count}
     assert never == {(chart, source) for chart, source, _ in NEVER_REFUSED}

@@ -13,7 +13,7 @@ from orchestrator.falsification.begin import _open
 from orchestrator.falsification.counterexamples import BITS, NOTES, rerun_counterexamples
 from orchestrator.falsification.objective import objective_of
 from orchestrator.falsification.shrink import away
-from orchestrator.falsification.subject import Subject, _kept
+from orchestrator.falsification.subject import Subject, _read_part
 from orchestrator.falsification.written import space_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -118,16 +118,16 @@ def test_an_interrupted_hunt_goes_on_to_the_same_end(
 ) -> None:
     words = (study(PLANTED), "--requirement", "final lateral position", "--budget", "100")
     _, whole = hunted(capsys, *words, "--out", str(tmp_path / "whole"))
-    out, made = tmp_path / "cut", Subject._made
+    out, made = tmp_path / "cut", Subject._run_part
 
     def cut(self: Any, part: Any, shares: Any, seeds: Any) -> Any:
         if self.runs > 40:
             self.interrupt.requested = True
         return made(self, part, shares, seeds)
 
-    monkeypatch.setattr(Subject, "_made", cut)
+    monkeypatch.setattr(Subject, "_run_part", cut)
     assert main(["falsify", *words, "--out", str(out)]) == 130
-    monkeypatch.setattr(Subject, "_made", made)
+    monkeypatch.setattr(Subject, "_run_part", made)
     capsys.readouterr()
     kept = len(list((out / "journal").glob("*.npz")))
     assert kept > 0
@@ -190,12 +190,12 @@ def test_a_journal_that_says_something_else_is_made_again(
     }
     part = tmp_path / "000000.npz"
     np.savez(part, **good)
-    found = _kept(part, shares, seeds)
+    found = _read_part(part, shares, seeds)
     assert found is not None
     assert found.words.tolist() == ["a", "b"]
     np.savez(part, **{**good, **change})
-    assert _kept(part, shares, seeds) is None
+    assert _read_part(part, shares, seeds) is None
     assert "made again" in capsys.readouterr().err
     whole = part.read_bytes()
     part.write_bytes(whole[: len(whole) // 2])
-    assert _kept(part, shares, seeds) is None
+    assert _read_part(part, shares, seeds) is None

@@ -12,7 +12,7 @@ import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.records import Channel, McapRecord, Metadata
 
-from orchestrator.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parsed, top_records
+from orchestrator.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parse_record, top_records
 from tests.fuzz.inputs import VALUES
 from tests.fuzz.limits import ask
 
@@ -43,7 +43,7 @@ def retold(data: bytes, key: str, text: str) -> bytes:
     for piece in top_records(data):
         body = bytes(piece.body)
         if piece.opcode == METADATA:
-            record = parsed(Metadata, piece)
+            record = parse_record(Metadata, piece)
             kept = {name: told for name, told in record.metadata.items() if name != "checksum"}
             body = _body(Metadata(name=record.name, metadata={**kept, key: text} if record.name == "apa" else kept))
         if piece.opcode == DATA_END:
@@ -67,7 +67,7 @@ def forged(data: bytes, draw: random.Random) -> bytes:
         if piece.opcode == DATA_END:
             break
         if piece.opcode == METADATA and draw.random() < 0.7:
-            body = _metadata(parsed(Metadata, piece), draw)
+            body = _metadata(parse_record(Metadata, piece), draw)
         elif piece.opcode == CHUNK_CODE and draw.random() < 0.5:
             body = _chunk([(item.opcode, bytes(item.body)) for item in chunk_records(piece)], draw)
         elif piece.opcode == MESSAGE_INDEX:

@@ -246,7 +246,7 @@ def _mistake(path: Path, system: System, is_damaged: bool) -> str:
         right = wanted.value(10.0 + system.brain.index(wanted.source))
         if not math.isclose(got, right, rel_tol=1e-12, abs_tol=1e-12):
             return f"{wanted}: {got!r}, expected {right!r}"
-    given_values = scenario.given(owner)
+    given_values = scenario.parameters_for(owner)
     for item in system.settings:
         if not math.isclose(given_values.get(item.pin.name, math.nan), item.number(), rel_tol=1e-12, abs_tol=1e-12):
             return f"{item}: {given_values.get(item.pin.name)!r}, expected {item.number()!r}"

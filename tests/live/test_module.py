@@ -14,13 +14,13 @@ from fmus.native.web import charts_of, live_library
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.master import last_exchange
 from orchestrator.coverage.tracer import name_of, tracing
-from orchestrator.live.situation import shipped
+from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
-SHIPPED = [scenario.name for scenario in (*shipped(), *shipped("valet"))]
+SHIPPED = [scenario.name for scenario in (*page_scenarios(), *page_scenarios("valet"))]
 EACH_CHANGE = (
     *("guo2015-case4", "apa-parallel", "zhang2022-double-track", "adaptive", "hsic", "preview", "valet-parallel"),
     *("fault-pose-noise", "apa-takeover"),

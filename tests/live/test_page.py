@@ -11,7 +11,7 @@ import yaml
 from controller_fmu.registry import Phase
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.live.page import live_page
-from orchestrator.live.situation import shipped
+from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
@@ -41,7 +41,7 @@ GROWS = "preview-camera"
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return written(tmp_path_factory.mktemp("live"), shipped())
+    return written(tmp_path_factory.mktemp("live"), page_scenarios())
 
 
 def written(folder: Any, scenarios: Any) -> Any:
@@ -60,11 +60,11 @@ def page(file: Any, show: Any) -> Iterator[Any]:
 
 
 def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
-    as_on_record(page, shipped())
+    as_on_record(page, page_scenarios())
 
 
 def test_the_valet_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
-    scenarios = shipped("valet")
+    scenarios = page_scenarios("valet")
     page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
     page.fill("#search", "scene.boxes[6].y")
     page.click("#found button")

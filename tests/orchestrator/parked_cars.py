@@ -11,7 +11,7 @@ from modelkit.car import Car, car_length
 from modelkit.variables import with_values
 from orchestrator.grid.cases import ISO
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import summarize
@@ -55,7 +55,7 @@ def _finds_its_slot(scenario: Scenario) -> bool:
 def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:
     """Return what becomes of a shipped car in a scenario, judged by where GB/T 41630 wants it to stand."""
     own = load_scenario(name, [f"car={car}"])
-    limits = [item for item in shipped_requirements("gbt41630") if item.id in POSES]
+    limits = [item for item in library_requirements("gbt41630") if item.id in POSES]
     scenario = own.with_requirements(limits)
     ran = run_scenario(scenario, files, kind="native")
     summary = summarize(ran.recording, scenario, ran.wall_time)

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from orchestrator.catalogue.entries import ROOM, STEP_TESTS, Clause, chosen_standards, is_catalogue, read_standard
-from orchestrator.catalogue.run import Catalogue, judged
+from orchestrator.catalogue.entries import ROOM, STEP_TESTS, Clause, is_catalogue, read_standard, select_standards
+from orchestrator.catalogue.run import Catalogue, judge_standards
 from orchestrator.catalogue.show import markdown
 from orchestrator.catalogue.verdicts import ClauseRun, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.cli import main
@@ -23,7 +23,7 @@ from orchestrator.suite.suite import Bench
 from orchestrator.text.errors import BAD_INPUT, BadInput
 from tests.docs.scripts import DOCS, script
 
-EVERYTHING = verdicts_of(chosen_standards(["catalogue"]))
+EVERYTHING = verdicts_of(select_standards(["catalogue"]))
 compiled = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 
 
@@ -57,7 +57,7 @@ def test_documentation_has_every_entry_as_it_is(item: ClauseVerdict) -> None:
 def test_limits_that_say_who_asks_say_it_of_the_standard_that_names_them() -> None:
     """A number belongs to the standard it is from, or to nobody: then it is ours."""
     for item in EVERYTHING:
-        for limit in item.entry.required_limits():
+        for limit in item.entry.limits_to_keep():
             source = limit.source.removesuffix(", unverified")
             own = source == "house" or item.standard.standard.startswith(source)
             assert own or item.standard.key.startswith("cicap"), (item.entry.id, limit.id, limit.source)
@@ -138,17 +138,17 @@ def test_verdicts(runs: list[ClauseRun], word: str, why: str) -> None:
 def test_what_a_step_test_cannot_ask_of_an_fmu_is_not_tested() -> None:
     asked = [ClauseVerdict(EVERYTHING[0].standard, entry(step_tests=["dead-sensor"]), []) for _ in range(3)]
     test = Scenario(name="dead-sensor")
-    note(asked[:1], suite.Tested(test, None, None, [], [], "no such input", code=BAD_INPUT))
-    note(asked[1:2], suite.Tested(test, None, None, [Case("a", False, "late")], []))
-    note(asked[2:], suite.Tested(test, None, None, [Case("a", True, "in time")], []))
+    note(asked[:1], suite.SuiteResult(test, None, None, [], [], "no such input", code=BAD_INPUT))
+    note(asked[1:2], suite.SuiteResult(test, None, None, [Case("a", False, "late")], []))
+    note(asked[2:], suite.SuiteResult(test, None, None, [Case("a", True, "in time")], []))
     assert [item.word for item in asked] == ["not tested", "missed", "met"]
 
 
 def test_words_of_the_command() -> None:
     assert [is_catalogue(word) for word in ("catalogue", "catalogue/gbt*", "catalogue.yaml")] == [True, True, False]
-    assert [item.key for item in chosen_standards(["catalogue/gbt*", "catalogue/gbt41630"])] == ["gbt41630", "gbt47031"]
+    assert [item.key for item in select_standards(["catalogue/gbt*", "catalogue/gbt41630"])] == ["gbt41630", "gbt47031"]
     with pytest.raises(BadInput, match="did you mean unr79"):
-        chosen_standards(["catalogue/unr97"])
+        select_standards(["catalogue/unr97"])
 
 
 @pytest.mark.parametrize("words", [["catalogue", "guo2015-case4"], ["catalogue", "--coverage"], ["catalogue/nothing"]])
@@ -190,7 +190,7 @@ def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
     assert "0 missed" in capsys.readouterr().out
     bench = Bench(fmu_files("native", lambda text: None), "native", Foreign(), [], Interrupt())
     for name in ("iso16787", "cicap-b1"):
-        assert markdown(judged([f"catalogue/{name}"], bench, tmp_path / name)) in page()
+        assert markdown(judge_standards([f"catalogue/{name}"], bench, tmp_path / name)) in page()
 
 
 @compiled

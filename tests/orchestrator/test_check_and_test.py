@@ -13,7 +13,7 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.foreign import Foreign
 from orchestrator.suite.junit import Case, Suite, write_junit
-from orchestrator.suite.suite import Bench, chosen, run_test
+from orchestrator.suite.suite import Bench, run_test, select_scenarios
 
 RULES = """
 - {id: parked at the end, signal: controller.phase, equals: PARKED, window: {at: end}, source: us}
@@ -77,7 +77,7 @@ def test_junit_holds_any_text(tmp_path: Path) -> None:
 
 
 def test_patterns_choose_shipped_scenarios() -> None:
-    names = chosen(["guo2015-case4*", "guo2015-case4", "my.yaml"])
+    names = select_scenarios(["guo2015-case4*", "guo2015-case4", "my.yaml"])
     assert names[0] == "guo2015-case4"
     assert names[-1] == "my.yaml"
     assert len(names) == len(set(names)) >= 5

@@ -19,8 +19,8 @@ posix = pytest.mark.skipif(os.name != "posix", reason="signals are those of POSI
 HANGS = """
 import time
 from fmus.files import new_folder
-from orchestrator.text.ends import ended_in_time
-with ended_in_time():
+from orchestrator.text.ends import interrupt_within_limit
+with interrupt_within_limit():
     print(new_folder("x"), flush=True)
     {hang}
 """

@@ -12,7 +12,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["guo2015-case4", "--set", "stop_time=0.3", "--fmus", "none"]
@@ -24,7 +24,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="folders are locked on POS
 @pytest.mark.parametrize("words", [["run", *SHORT], ["test", *SHORT], ["replay", "TABLE", "--row", "0"]])
 def test_a_folder_in_use_is_refused(words: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str], study: Any) -> None:
     words = [str(study("2.0", tmp_path / "study")) if word == "TABLE" else word for word in words]
-    with owned(tmp_path / "out"):
+    with lock_folder(tmp_path / "out"):
         assert main([*words, "--out", str(tmp_path / "out")]) == 2
     assert "out: another command is writing there" in capsys.readouterr().err
     assert list((tmp_path / "out").iterdir()) == []
@@ -33,12 +33,12 @@ def test_a_folder_in_use_is_refused(words: Any, tmp_path: Path, capsys: pytest.C
 
 @posix
 def test_the_lock_dies_with_its_process(tmp_path: Path) -> None:
-    code = "import sys, os; from pathlib import Path; from orchestrator.text.owned import owned\n"
-    code += "with owned(Path(sys.argv[1])):\n print('has it', flush=True)\n os.kill(os.getpid(), 9)"
+    code = "import sys, os; from pathlib import Path; from orchestrator.text.owned import lock_folder\n"
+    code += "with lock_folder(Path(sys.argv[1])):\n print('has it', flush=True)\n os.kill(os.getpid(), 9)"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, env=environment)
     assert done.stdout == b"has it\n"
-    with owned(tmp_path), pytest.raises(BadInput), owned(tmp_path):
+    with lock_folder(tmp_path), pytest.raises(BadInput), lock_folder(tmp_path):
         pass
 
 

@@ -145,8 +145,8 @@ def test_an_odd_value_comes_back(tmp_path: Path) -> None:
     for name, value in odd.items():
         slaves[0].inputs.values[slaves[0].inputs.index[name]] = value
     log = McapLog(tmp_path / "x.mcap", list(slaves), scenario, {})
-    log.exchanged(0)
-    log.closed(End("done", 0))
+    log.on_communication_point(0)
+    log.on_terminate(End("done", 0))
     read = read_log(tmp_path / "x.mcap").signals
     assert np.isnan(read["plant.command"][0])
     assert [read[f"plant.{name}"][0] for name in ("mode", "right", "active")] == [-3.0, -(2.0**31), 1.0]
@@ -180,6 +180,6 @@ def test_any_number_of_rows_about_a_chunk(tmp_path: Path, rows: int) -> None:
     log = McapLog(tmp_path / "x.mcap", list(slaves), Scenario(name="none"), {})
     count = 0 if rows == 0 else log.rows_per_chunk + rows - 2
     for row in range(count):
-        log.exchanged(row)
-    log.closed(End("done", count))
+        log.on_communication_point(row)
+    log.on_terminate(End("done", count))
     assert read_log(tmp_path / "x.mcap").t_ns.tolist() == list(range(count))

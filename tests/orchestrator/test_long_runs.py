@@ -18,7 +18,7 @@ from orchestrator.comparison.tolerance import Tolerance, Tolerances
 from orchestrator.cosim import signal_blocks
 from orchestrator.cosim.recording import Recording, StoredRecording, recording_of
 from orchestrator.cosim.signal_blocks import SignalBlocks
-from orchestrator.drawing.decimation import decimated, deviation
+from orchestrator.drawing.decimation import decimate, deviation
 from orchestrator.log import mcap_log
 from orchestrator.log.mcap_file import McapFile
 from orchestrator.log.mcap_log import add_channel
@@ -26,7 +26,7 @@ from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import summarize
 
 GROWTH_MB = 16.0
@@ -89,7 +89,7 @@ def parked(tmp_path_factory: pytest.TempPathFactory) -> tuple[Recording, Path]:
 
 
 def plain(recording: Recording) -> str:
-    return summarize(recording, logged(recording).scenario, 0.0).model_dump_json()
+    return summarize(recording, read_logged_run(recording).scenario, 0.0).model_dump_json()
 
 
 @pytest.fixture
@@ -114,7 +114,9 @@ def test_a_run_that_is_stored_meanwhile_is_judged_to_the_same_bits(
 
 def test_contact_by_poses_is_the_same_block_by_block(parked: tuple[Recording, Path], stored: Recording) -> None:
     """A vehicle of somebody else's puts out no clearance, so every pose is held against the scene."""
-    scenario = logged(parked[0]).scenario.model_copy(update={"obstacles": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]})
+    scenario = read_logged_run(parked[0]).scenario.model_copy(
+        update={"obstacles": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]}
+    )
     for run in (parked[0], stored):
         run.info["fmus"] = []
     one, two = (summarize(run, scenario, 0.0) for run in (parked[0], stored))
@@ -188,7 +190,7 @@ def test_a_page_keeps_changes_and_extremes_of_a_long_run(
 ) -> None:
     monkeypatch.setattr("orchestrator.drawing.decimation.MAX_VALUES", 60_000)
     monkeypatch.setattr("orchestrator.drawing.decimation.MAX_STEP_ROWS", 300)
-    run, shown = parked[0], decimated(stored, [3.337])
+    run, shown = parked[0], decimate(stored, [3.337])
     assert shown.count < run.count / 2
     assert round(3.34, 9) in shown.t.round(9).tolist()
     for name in ("vehicle.pose.x", "vehicle.speed", "vehicle.steering_wheel_angle"):

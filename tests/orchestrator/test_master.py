@@ -127,7 +127,7 @@ def test_the_last_step_ends_at_the_stop_time(stop_ns: int, every: int, steps: li
 
 def test_an_ending_ends_and_an_interrupt_too() -> None:
     class At:
-        def reached(self, t_ns: int) -> str:
+        def stop_reason(self, t_ns: int) -> str:
             return "enough" if t_ns >= 3 * STEP else ""
 
     master = Master(toys(), STEP, 100 * STEP)
@@ -148,5 +148,5 @@ def test_the_recorder_grows() -> None:
     recorder = Recorder(slaves, Small().exchanges)
     for t in range(9):
         slaves[0].outputs.values[0] = t
-        recorder.exchanged(t)
+        recorder.on_communication_point(t)
     assert recorder.recording({}).signals["plant.pose.x"].tolist() == list(range(9))

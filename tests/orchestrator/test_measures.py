@@ -12,7 +12,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.requirements import Condition
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.conditions import CONDITIONS, share
-from orchestrator.verdict.measures import Measure, When, measured
+from orchestrator.verdict.measures import Measure, When, measure_recording
 from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, POSE, facts_of, numbers
 from orchestrator.verdict.truth import Truth, truth_of
 
@@ -30,14 +30,14 @@ def recording(values: np.ndarray, name: str = "vehicle.speed") -> Recording:
 )
 def test_measures(how: str, value: float) -> None:
     measure = Measure(how, "vehicle.speed")  # type: ignore[arg-type]
-    assert measured(measure, recording(VALUES)) == value
-    assert measured(Measure(how, "vehicle.mass"), recording(VALUES), 7.0) == 7.0  # type: ignore[arg-type]
-    assert math.isnan(measured(measure, recording(VALUES[:0])))
+    assert measure_recording(measure, recording(VALUES)) == value
+    assert measure_recording(Measure(how, "vehicle.mass"), recording(VALUES), 7.0) == 7.0  # type: ignore[arg-type]
+    assert math.isnan(measure_recording(measure, recording(VALUES[:0])))
 
 
 @pytest.mark.parametrize("how", ["largest", "greatest", "smallest", "travel"])
 def test_not_a_number_is_the_worst_there_is(how: str) -> None:
-    assert math.isnan(measured(Measure(how, "vehicle.speed"), recording(np.array([1.0, math.nan, 5.0]))))  # type: ignore[arg-type]
+    assert math.isnan(measure_recording(Measure(how, "vehicle.speed"), recording(np.array([1.0, math.nan, 5.0]))))  # type: ignore[arg-type]
 
 
 def test_every_condition_is_in_the_table() -> None:
@@ -48,7 +48,7 @@ def test_every_condition_is_in_the_table() -> None:
 def test_the_measure_of_a_condition_is_its_worst_value(condition: Condition, limit: float) -> None:
     rule = CONDITIONS[condition]
     assert rule.worst is not None
-    worst = measured(Measure(rule.worst, "vehicle.speed"), recording(VALUES))
+    worst = measure_recording(Measure(rule.worst, "vehicle.speed"), recording(VALUES))
     assert rule.margin(np.array([worst]), limit)[0] == rule.margin(VALUES, limit).min()
 
 
@@ -94,5 +94,5 @@ def test_only_the_instants_that_count() -> None:
     cast("dict[str, Any]", run.signals)["controller.phase"] = np.array([0.0, 2.0, 2.0, 3.0])
     meant = {"last": -3.0, "first": 1.0, "largest": -3.0, "greatest": 1.0, "smallest": -3.0, "travel": 4.0}
     for how, value in meant.items():
-        assert measured(Measure(how, "vehicle.speed", When("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]
-        assert math.isnan(measured(Measure(how, "vehicle.speed", When("controller.phase", (5,))), run))  # type: ignore[arg-type]
+        assert measure_recording(Measure(how, "vehicle.speed", When("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]
+        assert math.isnan(measure_recording(Measure(how, "vehicle.speed", When("controller.phase", (5,))), run))  # type: ignore[arg-type]

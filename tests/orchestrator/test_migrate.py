@@ -13,7 +13,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.study_file import load_study
 from orchestrator.text.errors import BadInput
-from orchestrator.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, new_name, renamed
+from orchestrator.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, current_name, new_name
 from orchestrator.verdict.numbers import NUMBERS
 
 OLD = """\
@@ -167,7 +167,7 @@ def test_the_table_holds_names_that_exist_and_no_old_one_does() -> None:
     top = {(old, new) for old, new in SCENARIO_KEYS.items() if "." not in old}
     assert {new for _, new in top} <= Scenario.model_fields.keys()
     assert not {old for old, _ in top} & Scenario.model_fields.keys()
-    assert renamed("vehicle.person.lever") == "vehicle.manual.lever"
+    assert current_name("vehicle.person.lever") == "vehicle.manual.lever"
     assert new_name("shifts") == "manoeuvres"
     assert new_name("wobble") == "vehicle.driver.speed_oscillation_amplitude"
     assert new_name("nothing") == ""

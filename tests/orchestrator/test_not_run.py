@@ -15,7 +15,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.sweep import batch
 from orchestrator.sweep.engine import all_rows, rows_or_reason
 from orchestrator.text.errors import NotRunError, RunError
-from orchestrator.text.failures import explained
+from orchestrator.text.failures import exit_code_and_message
 
 STUDY = """
 name: few
@@ -61,7 +61,7 @@ def test_a_chunk_with_a_run_that_could_not_take_place_has_no_rows(cause: Excepti
         batch.rows_by(row, 5)
     assert len(error.value.args) == 2
     assert str(error.value).startswith("2 runs could not take place: ")
-    assert explained(error.value, [])[0] == 2
+    assert exit_code_and_message(error.value, [])[0] == 2
     again = pickle.loads(pickle.dumps(error.value))
     assert (type(again), again.args) == (NotRunError, error.value.args)
 
@@ -114,13 +114,17 @@ def in_threads(monkeypatch: Any, run: Any) -> None:
 
 
 def test_the_table_of_a_notebook_raises_it(study: Path, tmp_path: Path, monkeypatch: Any) -> None:
-    monkeypatch.setattr("orchestrator.sweep.batch.compiled", lambda *given: Failing(None, MemoryError(), {1, 2, 3, 4}))
+    monkeypatch.setattr(
+        "orchestrator.sweep.batch.compile_models", lambda *given: Failing(None, MemoryError(), {1, 2, 3, 4})
+    )
     with pytest.raises(NotRunError, match="4 runs could not take place"):
         sweep_table(study, folder=tmp_path / "s")
 
 
 def test_a_hunt_has_no_result(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
-    monkeypatch.setattr("orchestrator.sweep.batch.compiled", lambda *given: Failing(None, OSError(28, "full"), {1, 2}))
+    monkeypatch.setattr(
+        "orchestrator.sweep.batch.compile_models", lambda *given: Failing(None, OSError(28, "full"), {1, 2})
+    )
     assert main(["falsify", "apa-world", "--budget", "50", "--jobs", "1", "--out", str(tmp_path)]) == 2
     said = capsys.readouterr()
     assert "no result" in said.err

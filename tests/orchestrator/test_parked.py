@@ -24,12 +24,12 @@ from orchestrator.sweep.rows import measures_for, row_of
 from orchestrator.sweep.verdict import OUTCOMES, judge_rows
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline, place, slot_box
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.numbers import NUMBERS
 from orchestrator.verdict.outcome import state_name
 from orchestrator.verdict.standing import outline_margin
 from orchestrator.verdict.summary import Final, Summary, summarize
-from orchestrator.verdict.truth import joined, truth_of
+from orchestrator.verdict.truth import join_truths, truth_of
 
 CASE_4 = load_scenario("guo2015-case4")
 SLOT_ONLY = load_scenario("guo2015-case4", ["requirements=[]"])
@@ -170,13 +170,13 @@ def test_a_log_without_a_target_is_judged_by_what_the_controller_was_told() -> N
     old = standing((1.0, 2.0, 0.5))
     del old.info["scenario"]["target"]
     old.parameters |= {"controller.target.x": 1.0, "controller.target.y": 1.9, "controller.target.heading": 0.5}
-    scenario, note = logged(old)
+    scenario, note = read_logged_run(old)
     assert "the pose the controller was told" in note
     found = summarize(old, scenario, 1.0, note)
     assert found.final.lateral_error == pytest.approx(0.1 * math.cos(0.5))
     assert found.notes == [note]
     foreign = Recording(old.t_ns, old.signals, {}, old.variables, {})
-    scenario, note = logged(foreign)
+    scenario, note = read_logged_run(foreign)
     assert (scenario.target, note) == (None, "no target is in this log: where the car should stand is not known")
     assert math.isnan(summarize(foreign, scenario, 1.0).final.lateral_error)
 
@@ -250,7 +250,7 @@ def test_one_run_and_a_table_are_judged_alike_to_the_last_bit() -> None:
         recordings.append(standing(pose, phase, float(rng.choice([0.0, 0.0, 0.0, 0.1])), scenario))
     kept = measures_for(scenarios[0])
     rows = np.array([row_of(run, scenario, kept) for run, scenario in zip(recordings, scenarios, strict=True)])
-    truth = joined([truth_of(scenario, {**PLANT, **scenario.vehicle}) for scenario in scenarios])
+    truth = join_truths([truth_of(scenario, {**PLANT, **scenario.vehicle}) for scenario in scenarios])
     table = judge_rows(scenarios[0], truth, kept, rows)
     for number, (run, scenario) in enumerate(zip(recordings, scenarios, strict=True)):
         alone = summarize(run, scenario, 1.0)

@@ -14,7 +14,7 @@ ROW = {"kind": 0, "outcome": "parked", "reason": "all checks passed", "steered":
 
 
 def drawn(count: int = 200) -> dict[str, np.ndarray]:
-    return SPACE.named(np.random.default_rng(5).random((count, len(FACTORS))))
+    return SPACE.values_by_name(np.random.default_rng(5).random((count, len(FACTORS))))
 
 
 def test_rows_do_not_depend_on_the_system() -> None:

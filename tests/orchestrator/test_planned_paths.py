@@ -7,7 +7,7 @@ from controller_fmu.registry import MODEL
 from modelkit.signal import Role
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.seen import fixed_points, planned_paths
+from orchestrator.drawing.seen import path_plans, path_points
 from orchestrator.verdict.geometry import key_points, sample_path
 from tests.native_runs import native_recording
 
@@ -20,7 +20,7 @@ def farthest(recording: Recording) -> float:
     """Return how far the car was off its planned paths at most [m]."""
     fine = np.linspace(0.0, 1.0, 10)
     paths = np.concatenate(
-        [path[:-1] + share * np.diff(path, axis=0) for path in planned_paths(recording) for share in fine]
+        [path[:-1] + share * np.diff(path, axis=0) for path in path_plans(recording) for share in fine]
     )
     return float(np.hypot(*(driven(recording)[::20, None] - paths[None]).transpose(2, 0, 1)).min(axis=1).max())
 
@@ -33,7 +33,7 @@ def test_the_car_drives_along_the_planned_path(name: str) -> None:
 
 def test_the_quintics_of_zhang_lead_from_the_start_to_the_target_in_the_final_time() -> None:
     recording = native_recording("zhang2022")
-    (path,) = planned_paths(recording)
+    (path,) = path_plans(recording)
     assert path[0] == pytest.approx([8.5, 2.8], abs=1e-9)
     assert path[-1] == pytest.approx([0.0, 0.0], abs=1e-9)
     values = recording.values_at("controller", len(recording.t) - 1)
@@ -55,7 +55,7 @@ def test_a_quintic_to_the_left_is_the_mirror_image() -> None:
 
 
 def test_the_points_of_guo_are_those_of_table_2() -> None:
-    points = fixed_points(native_recording("guo2015-case4"))
+    points = path_points(native_recording("guo2015-case4"))
     printed = {"Q1": (-3.798, -1.522), "Q2": (-3.077, -0.830), "Q3": (-7.608, -3.056), "Q4": (-5.108, -3.056)}
     assert set(points) == set(printed)
     for name, at in printed.items():
@@ -64,9 +64,9 @@ def test_the_points_of_guo_are_those_of_table_2() -> None:
 
 def test_the_points_of_hsic_lie_on_its_planned_path() -> None:
     recording = native_recording("hsic")
-    points = fixed_points(recording)
+    points = path_points(recording)
     assert list(points) == ["P1", "P2", "P3", "P4"]
-    path = planned_paths(recording)[-1]
+    path = path_plans(recording)[-1]
     for at in points.values():
         assert np.hypot(*(path - at).T).min() < 0.03
 

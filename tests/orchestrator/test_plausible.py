@@ -8,7 +8,7 @@ from orchestrator.cli import main
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible, plausible
-from orchestrator.session.cost import told_cost
+from orchestrator.session.cost import cost_text
 from orchestrator.text.errors import BadInput
 
 
@@ -62,10 +62,10 @@ def test_what_cannot_be_is_refused(setting: str, tmp_path: Path, capsys: pytest.
 
 
 def test_a_run_of_terabytes_is_refused_and_a_long_one_told() -> None:
-    assert told_cost(6001, 250) == ""
-    assert "up to 3 GB of log and 10 GB of scratch space" in told_cost(5_000_000, 250)
+    assert cost_text(6001, 250) == ""
+    assert "up to 3 GB of log and 10 GB of scratch space" in cost_text(5_000_000, 250)
     with pytest.raises(BadInput, match="TB of log"):
-        told_cost(10**12, 250)
+        cost_text(10**12, 250)
 
 
 def test_a_study_of_too_many_runs_is_refused_before_any_number_is_drawn(

@@ -15,7 +15,7 @@ from orchestrator.live.layout import layout_data
 from orchestrator.log.read_log import read_log
 from orchestrator.report.found_runs import find_runs
 from orchestrator.session.provenance import git_commit
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 SHORT = ["run", DEMO, "--fmus", "none", "--no-page", "--set", "stop_time=0.2"]
@@ -97,7 +97,7 @@ def test_the_page_of_a_repeated_run_has_the_slot_layout_of_the_log(tmp_path: Pat
     assert main(["run", "apa-parallel", *layout, "--fmus", "none", "--out", str(tmp_path / "run"), "-q"]) == 1
     assert main(["rerun", str(tmp_path / "run"), "-q"]) == 1
     first, again = (
-        layout_data(logged(read_log(tmp_path / name / "run.mcap")).scenario) for name in ("run", "run-rerun")
+        layout_data(read_logged_run(read_log(tmp_path / name / "run.mcap")).scenario) for name in ("run", "run-rerun")
     )
     assert first == again
     assert first is not None

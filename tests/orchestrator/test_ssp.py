@@ -255,12 +255,12 @@ def test_a_connectors_unit_of_another_quantity_is_refused(tmp_path: Path) -> Non
 def test_values_come_in_the_unit_of_the_fmu(tmp_path: Path) -> None:
     values = real("gain", "180", "deg") + real("bare", "200", "gon") + real("share", "5", "-")
     scenario, _ = assembled(small(tmp_path, values=values))
-    assert scenario.given("plant") == {"gain": pytest.approx(math.pi), "bare": 200.0, "share": 5.0}
+    assert scenario.parameters_for("plant") == {"gain": pytest.approx(math.pi), "bare": 200.0, "share": 5.0}
 
 
 def test_a_value_without_unit_is_in_that_of_its_connector(tmp_path: Path) -> None:
     scenario, _ = assembled(small(tmp_path, values=real("gain", "180"), plant={"gain": "deg"}))
-    assert scenario.given("plant") == {"gain": pytest.approx(math.pi)}
+    assert scenario.parameters_for("plant") == {"gain": pytest.approx(math.pi)}
 
 
 def test_a_value_of_an_input_is_its_start_and_one_of_nothing_is_told(tmp_path: Path) -> None:

@@ -7,12 +7,12 @@ from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from modelkit.car import Car
 from modelkit.variables import Variable, variables, with_values
-from orchestrator.scenario.files import shipped
+from orchestrator.scenario.files import library_names
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import shipped_requirements
-from orchestrator.scenario.slot_sizes import shipped_slot_sizes
+from orchestrator.scenario.requirements import library_requirements
+from orchestrator.scenario.slot_sizes import library_slot_sizes
 
-LIMITS = {item.id: item.limit for item in shipped_requirements("gbt41630")}
+LIMITS = {item.id: item.limit for item in library_requirements("gbt41630")}
 OF_STANDARD = [item for item in variables(MODEL.params) if item.signal.source == "GB/T 41630"]
 SAME = {
     "final_lateral_error": "final lateral position",
@@ -38,7 +38,7 @@ def test_nobody_can_have_a_car_stand_out_further_than_the_standard_allows() -> N
 
 
 def test_the_assist_knows_the_shortest_slots_as_they_are_told() -> None:
-    assert ISO_16787._asdict() == shipped_slot_sizes("iso16787")
+    assert ISO_16787._asdict() == library_slot_sizes("iso16787")
 
 
 @pytest.mark.parametrize(("name", "kind"), [("apa-parallel-tight", 1), ("apa-perpendicular-tight", 2)])
@@ -55,8 +55,8 @@ def test_the_tight_slots_are_the_shortest_but_for_centimetres(name: str, kind: i
 def test_a_limit_of_a_standard_is_the_same_in_every_set_that_has_it() -> None:
     """Shifts into a parallel and into a perpendicular slot are two."""
     found: dict[tuple[str, str], set[float | str]] = {}
-    for name in shipped("requirements"):
-        for item in shipped_requirements(name):
+    for name in library_names("requirements"):
+        for item in library_requirements(name):
             if item.source.startswith(("GB/T", "ISO", "UN")):
                 found.setdefault((item.source, item.signal), set()).add(item.limit)
     twice = {key: limits for key, limits in found.items() if len(limits) > 1}

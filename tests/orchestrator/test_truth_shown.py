@@ -17,7 +17,7 @@ from orchestrator.scenario.scenario import Target
 from orchestrator.session.foreign import fitting
 from orchestrator.session.session import Ran, run_scenario
 from orchestrator.suite.collection import picture
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import summarize
 
 TRUE = (-7.608, -3.056, 0.0)
@@ -60,7 +60,7 @@ def test_the_card_of_a_test_is_turned_to_the_true_target(ran: tuple[Ran, Path]) 
 
 
 def test_the_log_carries_what_is_true(ran: tuple[Ran, Path]) -> None:
-    scenario, note = logged(read_log(ran[1]))
+    scenario, note = read_logged_run(read_log(ran[1]))
     assert note == ""
     assert (scenario.target, scenario.slot, scenario.stop_condition) == (TOLD.target, TOLD.slot, TOLD.stop_condition)
     assert scenario.requirements == TOLD.requirements
@@ -71,7 +71,7 @@ def test_what_a_foreign_vehicle_does_not_have_stays_true(ran: tuple[Ran, Path]) 
     kerb = "scene.kerbs=[[-15, -4.1, 5, -4.1, 0.1]]"
     scenario, unsupported_parameters = fitting(load_scenario("guo2015-case4", [kerb]), {"vehicle": []})
     assert "vehicle.scene.boxes[1].x" in unsupported_parameters
-    assert scenario.given("vehicle") == {}
+    assert scenario.parameters_for("vehicle") == {}
     recording = ran[0].recording
     theirs = {name: value for name, value in recording.parameters.items() if not name.startswith("vehicle.")}
     info = {**recording.info, "scenario": scenario.model_dump(mode="json", exclude={"file"})}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from modelkit.geometry import Box, boxes_gap, corners
-from orchestrator.commands.sweep import chosen_study
+from orchestrator.commands.sweep import select_study
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.world import ends
-from orchestrator.grid.world.asked import HEARD, asked
+from orchestrator.grid.world.asked import HEARD, feasibility_columns
 from orchestrator.grid.world.factors import FACTORS
 from orchestrator.grid.world.study import fields, space, study
 from orchestrator.sweep.repeat import repeat_row
@@ -86,7 +86,7 @@ def test_nobody_is_there_all_at_once() -> None:
 
 def test_at_the_nominal_point_nothing_is_disturbed() -> None:
     world = space(list(FACTORS))
-    named = world.named(world.nominal()[None])
+    named = world.values_by_name(world.nominal()[None])
     assert {factor.name: named[factor.name][0] for factor in FACTORS} == pytest.approx(
         {factor.name: factor.nominal for factor in FACTORS}
     )
@@ -143,12 +143,12 @@ def test_a_neighbour_who_has_moved_moves_the_line_of_a_row_across_the_road() -> 
 
 def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() -> None:
     world = space(list(FACTORS))
-    nominal = {name: values[0] for name, values in world.named(world.nominal()[None]).items()}
+    nominal = {name: values[0] for name, values in world.values_by_name(world.nominal()[None]).items()}
     nominal["vehicle.car.rear_overhang"] = 0.6
 
     def said(**factors: float) -> tuple[float, float]:
-        found = asked({name: np.array([value]) for name, value in {**nominal, **factors}.items()})
-        return float(found["valid"][0]), float(found["asked"][0])
+        found = feasibility_columns({name: np.array([value]) for name, value in {**nominal, **factors}.items()})
+        return float(found["valid"][0]), float(found["feasibility_columns"][0])
 
     stop = {"kind": 1, "behind": 2, "kerb_height": 0.08}
     assert said() == (1.0, 1.0)
@@ -169,7 +169,7 @@ def test_a_heard_wheel_stop_is_where_it_is_said_to_be() -> None:
     """In a slot that is valid no stop that is heard lies under a car that stands at its target; else one does."""
     made = study(2000, 5)
     values, labels = columns(made), made.design.labels
-    said = asked({**values, **labels})["valid"]
+    said = feasibility_columns({**values, **labels})["valid"]
     half_turn = np.where(labels["side"] == 0, 1.0, -1.0)
     tail = half_turn * values["target.y"] - values["vehicle.car.rear_overhang"] * np.cos(
         np.radians(0.25 * (labels["turn_a"] + labels["turn_b"]))
@@ -205,7 +205,7 @@ def test_who_brought_a_contact_about(speed: Any, walker: Any, name: str, came: b
         "speed_y": speed[1],
     }
     row |= {f"vehicle.scene.boxes[4].{key}": value for key, value in box.items()}
-    first = ends.touched_first(row)
+    first = ends.first_contact(row)
     assert first == ends.Touched(name, came)
     assert not ends.is_driven_into(row, first), "it drives"
     assert ends.is_driven_into({**row, "touched.speed": 0.005}, first) == (speed[1] != 0.0)
@@ -217,7 +217,7 @@ CAR = {"wheelbase": 2.405, "front_overhang": 0.8, "rear_overhang": 0.6, "width":
 
 def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:
     """The first runs of a draw: each row says how it ended and who was touched; one that touched is run again."""
-    made = chosen_study("apa-world", ["runs=60", "seed=1"])
+    made = select_study("apa-world", ["runs=60", "seed=1"])
     swept = sweep(made, tmp_path, Options())
     assert swept.table is not None
     table = Table(swept.table)

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from orchestrator.cli import main
-from orchestrator.drawing.run_figure import styled
+from orchestrator.drawing.run_figure import style_context
 from orchestrator.papers.drive import drive
 from orchestrator.papers.figure_files import write_figures
 from orchestrator.papers.paper_figures import FIGURES, PaperFigure
@@ -51,7 +51,7 @@ def test_figures_of_a_paper_are_written_with_data_and_commands(tmp_path: Path) -
 )
 def test_words_of_a_figure_are_inside_it_and_none_is_over_another(item: PaperFigure) -> None:
     assert item.draw is not None
-    with styled():
+    with style_context():
         figure = item.draw([])
     FigureCanvasAgg(figure).draw()
     texts = [text for axis in figure.axes for text in (*axis.texts, axis.xaxis.label, axis.yaxis.label)]

@@ -12,7 +12,7 @@ import pytest
 from controller_fmu.parking.params import ParkingParams, ParkingSystem
 from modelkit.variables import variables
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.session.drive import drive
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
@@ -62,7 +62,7 @@ def ended(name: str, folder: Path) -> Ended:
     parked = scenario.expected_outcome in ("parked", "finished")
     update = {
         "controller": {**kept, "system": int(ParkingSystem.PARKING)},
-        "requirements": [*shipped_requirements("valet-slot" if parked else "no-contact")],
+        "requirements": [*library_requirements("valet-slot" if parked else "no-contact")],
         "system": None,
     }
     scenario = scenario.model_copy(update=update)

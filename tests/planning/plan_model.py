@@ -25,7 +25,7 @@ class Params(NamedTuple):
 
 
 class Input(NamedTuple):
-    unused: bool = False
+    patterns_without_match: bool = False
 
 
 class Output(NamedTuple):

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from orchestrator.catalogue.entries import chosen_standards
+from orchestrator.catalogue.entries import select_standards
 from orchestrator.catalogue.show import write_catalogue
 from orchestrator.catalogue.verdicts import ClauseRun, verdicts_of
 from orchestrator.cli import main
@@ -64,7 +64,7 @@ def index(tmp_path_factory: pytest.TempPathFactory) -> Any:
 @pytest.fixture(scope="module")
 def catalogue(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("catalogue") / "index.html"
-    verdicts = verdicts_of(chosen_standards(["catalogue/unr79"]))
+    verdicts = verdicts_of(select_standards(["catalogue/unr79"]))
     for item in verdicts[::2]:
         item.tried.extend(
             ClauseRun(name, "parked", ["too fast"] * (item is verdicts[0]), []) for name in item.entry.scenarios

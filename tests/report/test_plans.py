@@ -10,7 +10,7 @@ from controller_fmu.apa.slot import Kind, Side
 from controller_fmu.apa.ways.move import Move, Piece, end_of
 from modelkit.vocabulary import Pose
 from orchestrator.report.payload import Arrays
-from orchestrator.report.plans import MOST_PLANS, found_slot, plans_of, wanted_pose
+from orchestrator.report.plans import MOST_PLANS, plans_of, slot_corners, target_pose
 from orchestrator.report.run_data import ribbons_of
 from orchestrator.verdict.geometry import sample_path
 from tests.native_runs import native_recording
@@ -46,14 +46,14 @@ def test_a_found_slot_lies_on_its_side_of_the_road(side: Any, mirror: Any) -> No
     out = mirror * np.array([-math.sin(heading), math.cos(heading)])
     a = np.array([4.0, 5.0])
     expected = [a, a + 6.0 * along + 0.1 * out, a + 6.0 * along - 2.2 * out, a - 2.2 * out]
-    found = found_slot(values)
+    found = slot_corners(values)
     assert found is not None
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_no_slot_no_pose_no_path() -> None:
-    assert found_slot({"apa.slot.kind": 0.0}) is None
-    assert wanted_pose({}) is None
+    assert slot_corners({"apa.slot.kind": 0.0}) is None
+    assert target_pose({}) is None
     assert len(sample_path({})) == 0
 
 

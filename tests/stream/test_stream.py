@@ -52,10 +52,10 @@ def test_who_is_early_waits_and_who_is_late_is_counted() -> None:
     clock = Clock()
     pace = Pace(clock, clock.sleep)
     for step, work in enumerate((0.004, 0.002, 0.025, 0.0, 0.0)):
-        pace.exchanged(step * 10_000_000)
+        pace.on_communication_point(step * 10_000_000)
         clock.now += work
     assert clock.slept == pytest.approx([0.006, 0.008])
-    told = pace.told()
+    told = pace.lateness_statistics()
     assert (told["exchanges"], told["late"]) == (5, 2)
     assert told["largest"] == pytest.approx(0.015)
     assert told["at_end"] == pytest.approx(0.005)
@@ -146,7 +146,7 @@ def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start() -> None
     early = []
 
     class Asks:
-        def exchanged(self, t_ns: Any) -> None:
+        def on_communication_point(self, t_ns: Any) -> None:
             pass
 
         def closed(self, end: Any) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import Requirement, Window, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, Window, library_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.sweep.columns import WITHIN, columns_of
 from orchestrator.sweep.fields import find_field
@@ -89,7 +89,7 @@ def study() -> Study:
         design,
         CONTENT,
         measures={"first speed": Measure("first", "vehicle.speed", tracking)},
-        within={"slow": [slow], "guo": [*shipped_requirements("guo2015", "final heading")]},
+        within={"slow": [slow], "guo": [*library_requirements("guo2015", "final heading")]},
         derived=Derived({"twice": Number("s", "twice the time")}, lambda columns: {"twice": 2.0 * columns["duration"]}),
     )
 

@@ -23,13 +23,13 @@ from orchestrator.sweep.page.statistics import (
     maps,
     outcome_counts,
     variance_share,
-    varied,
+    varying_columns,
     worst,
 )
 from orchestrator.sweep.table import Table
 from orchestrator.text.readable import readable
 from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import required_text
+from orchestrator.verdict.limit_text import requirement_text
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 STUDY = """
@@ -150,7 +150,7 @@ def test_maps_count_every_run_once(table: Any) -> None:
 
 
 def test_parameters_that_always_agree_are_shown_once(table: Any) -> None:
-    assert "controller.car.steering.rate_limit" not in varied(table)
+    assert "controller.car.steering.rate_limit" not in varying_columns(table)
     assert [item.name for item in influences(table)].count("vehicle.car.steering.rate_limit") == 1
 
 
@@ -241,7 +241,7 @@ def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
     for item in Scenario(**table.job.scenario).requirements:
         if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
             beyond = item.limit - row[item.signal] if item.condition == "min" else abs(row[item.signal]) - item.limit
-            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({required_text(item)})"] = beyond / (
+            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({requirement_text(item)})"] = beyond / (
                 abs(item.limit) or 1.0
             )
     assert found == max(violations, key=lambda key: violations[key])

@@ -83,7 +83,7 @@ class Seen:
     def __init__(self) -> None:
         self.times: list[int] = []
 
-    def exchanged(self, t_ns: Any) -> None:
+    def on_communication_point(self, t_ns: Any) -> None:
         self.times.append(t_ns)
 
     def closed(self, end: Any) -> None:

@@ -74,7 +74,7 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) ->
     scenario = load_scenario(name, [])
     model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
     expected = run_scenario(scenario, fmus["native"], kind="native").recording
-    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.given(part).items()}
+    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.parameters_for(part).items()}
     params = np.array(flatten(with_values(model.params, given)), dtype=float)
     inputs = np.zeros((len(expected.t_ns), len(variables(model.inputs))))
     rows = library(params, inputs, scenario.step_ns)
@@ -88,7 +88,7 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) ->
 def test_its_exchanges_are_exact_at_any_communication_step(name: Any, milliseconds: int) -> None:
     scenario = load_scenario(name, [])
     model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
-    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.given(part).items()}
+    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.parameters_for(part).items()}
     params = np.array(flatten(with_values(model.params, given)), dtype=float)
 
     def rows(step_ns: int) -> Any:
@@ -132,7 +132,9 @@ def test_the_container_of_fmi_3_gives_them(containers: Any, recording: Any, tmp_
 def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length(driver_changes: bool) -> None:
     """Steps within, on and across the exchanges, and inputs that change in between."""
     model, played = pair(STEP)
-    params = with_values(model.params, {f"vehicle.{key}": value for key, value in CASE.given("vehicle").items()})
+    params = with_values(
+        model.params, {f"vehicle.{key}": value for key, value in CASE.parameters_for("vehicle").items()}
+    )
     (state, outputs), inputs = model.initialize(params), model.inputs()
     library, memory = played.library, np.zeros(1_000_000, dtype=np.uint8)
     told, given = np.empty(played.count), np.array(flatten(inputs), dtype=float)

@@ -19,7 +19,7 @@ from orchestrator.sweep.job import chunks, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
-from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.numbers import MEASURES
 from tests.twin.replays import CLibrary, Fmi3, played
 
@@ -102,7 +102,7 @@ def test_every_target_equals_the_models_in_process(fmus: Any, targets: Any, name
     job = make_job(Study(fixed, design, {"name": name}))._replace(measures=list(KEPT))
     (row,) = run_batch(job, next(chunks(design, 1)))
     assert row[1] == expected.recording.t_ns[-1]
-    numbers = np.array([measured(item, expected.recording) for item in KEPT])
+    numbers = np.array([measure_recording(item, expected.recording) for item in KEPT])
     pairs = zip(KEPT, row[FIRST_MEASURE:], numbers, strict=True)
     assert [item for item, one, other in pairs if not same(one, other)] == []
 

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
-from orchestrator.commands.sweep import chosen_study
+from orchestrator.commands.sweep import select_study
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import console
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
     from orchestrator.falsification.falsify import FalsificationResult
@@ -76,9 +76,9 @@ def _hunt(arguments: argparse.Namespace) -> int:
     from orchestrator.falsification.page import as_json, write_page
     from orchestrator.falsification.subject import Stopped
 
-    study = chosen_study(arguments.study, arguments.set)
+    study = select_study(arguments.study, arguments.set)
     out: Path = arguments.out or Path("runs") / f"falsify-{study.name}"
-    with owned(out):
+    with lock_folder(out):
         subject = begin(study, arguments, out)
         try:
             result = falsify(subject, arguments.budget, arguments.seed, out / "counterexamples")

@@ -173,7 +173,7 @@ def _study(arguments: argparse.Namespace) -> int:
             "has a vehicle of its own, whose parameters only you know: docs/studies.md has the file", key=base
         )
     x, y, heading = (float(given.get(f"start.{axis}", 0.0)) for axis in ("x", "y", "heading"))
-    seen = _seen_from(file.parent, base) if base.endswith((".yaml", ".yml")) else base
+    seen = _relative_path(file.parent, base) if base.endswith((".yaml", ".yml")) else base
     ends = {"left": x - START_RANGE, "right": x + START_RANGE, "low": y - START_RANGE, "high": y + START_RANGE}
     words = {key: f"{value:.6g}" for key, value in {**ends, "heading": heading}.items()}
     _write(TEMPLATES / "study" / f"study.yaml{SUFFIX}", file, name, file=str(file), scenario=seen, **words)
@@ -193,7 +193,10 @@ def _pipelines_of_fmu(arguments: argparse.Namespace) -> int:
     scenario = Path(arguments.scenario) if arguments.scenario else arguments.out / f"{name}.yaml"
     arguments.controller = arguments.vehicle = None
     files = _third_party(arguments)
-    words = {"fmu": _seen_from(arguments.out, arguments.fmu), "scenario": _seen_from(arguments.out, str(scenario))}
+    words = {
+        "fmu": _relative_path(arguments.out, arguments.fmu),
+        "scenario": _relative_path(arguments.out, str(scenario)),
+    }
     _check_new(arguments.out, name)
     if not scenario.exists():
         if arguments.scenario:
@@ -203,7 +206,7 @@ def _pipelines_of_fmu(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _seen_from(folder: Path, place: str) -> str:
+def _relative_path(folder: Path, place: str) -> str:
     return Path(os.path.relpath(place, folder)).as_posix()
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.description import ports_of, read_description
 from orchestrator.cosim.slave import Ports
-from orchestrator.foreign.archive import checked
+from orchestrator.foreign.archive import check_archive
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.foreign import fmu_of
 from orchestrator.system.remarks import SPARE
@@ -103,11 +103,11 @@ def _spare_outputs(sides: Mapping[str, _Side], found: Sequence[Suggestion], role
         for owner, side in sides.items()
         if side.is_third_party
         for name in side.outputs.ports.names
-        if not any(f"{owner}.{name}" in word for word in taken) and name not in _recorded(owner)
+        if not any(f"{owner}.{name}" in word for word in taken) and name not in _log_outputs(owner)
     ]
 
 
-def _recorded(owner: str) -> set[str]:
+def _log_outputs(owner: str) -> set[str]:
     """Return the outputs that verdict and log read under these names and no input takes."""
     taken = {item.name for model in MODELS.values() for item in variables(model.inputs)}
     return {item.name for item in variables(MODELS[owner].outputs)} - taken
@@ -121,7 +121,7 @@ def _side(owner: str, text: str) -> _Side:
         outputs = [item for item in variables(model.outputs) if item.name in usual_inputs or owner == "vehicle"]
         return _Side(Signals(owner, Ports(own)), Signals(owner, Ports(outputs), usual_inputs), False)
     path = fmu_of(text)
-    checked(path)
+    check_archive(path)
     description = read_description(path)
     ports = [ports_of(description, causality, None, path) for causality in ("input", "output")]
     return _Side(Signals(owner, ports[0]), Signals(owner, ports[1], usual_inputs), True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from orchestrator.report.results import LOG, SUMMARY
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 RUNS = Path("runs")
 """Where runs go by default, below the current folder."""
@@ -22,7 +22,7 @@ def run_folder(chosen: Path | None, name: str, *, force: bool) -> Iterator[Path]
     """
     if chosen is not None or force:
         folder = chosen or RUNS / name
-        with owned(folder):
+        with lock_folder(folder):
             if has_run(folder) and not force:
                 raise BadInput("has a run already; choose another --out, or replace it with --force", file=folder)
             yield folder
@@ -31,7 +31,7 @@ def run_folder(chosen: Path | None, name: str, *, force: bool) -> Iterator[Path]
         folder = RUNS / name if number == 1 else RUNS / f"{name}-{number}"
         if has_run(folder):
             continue
-        with owned(folder):
+        with lock_folder(folder):
             if not has_run(folder):
                 yield folder
                 return

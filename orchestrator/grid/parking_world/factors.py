@@ -30,9 +30,9 @@ WIDER = {
 OWN = (*ROW, *SURROUNDINGS)
 
 
-def _widened(factor: Factor) -> Factor:
+def _widen(factor: Factor) -> Factor:
     low, high = WIDER.get(factor.name, (factor.low, factor.high))
     return factor._replace(low=low, high=high)
 
 
-FACTORS = (*map(_widened, world.FACTORS), *OWN)
+FACTORS = (*map(_widen, world.FACTORS), *OWN)

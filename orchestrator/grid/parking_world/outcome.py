@@ -46,7 +46,7 @@ ENDS = {
 COLUMNS = {"valid": Number("1", "1: by the scene alone, the slot has ISO 16787's room for the car, and nothing in it")}
 
 
-def _made(columns: Columns) -> Mapping[str, Array]:
+def _outcome_columns(columns: Columns) -> Mapping[str, Array]:
     valid = is_valid(columns)
     names = ("outcome", "reason", "kind", *MEASURES, *(WITHIN.format(name) for name in GBT.values()))
     rows = zip(*(np.asarray(columns[name]).tolist() for name in names), strict=True)
@@ -72,4 +72,4 @@ def end_of(row: Mapping[str, Any], valid: bool) -> str:
     return FAILED if row["outcome"] == "failed" else ENDLESS
 
 
-FOUND = Derived(COLUMNS, _made, {"end": "how the run ended"})
+FOUND = Derived(COLUMNS, _outcome_columns, {"end": "how the run ended"})

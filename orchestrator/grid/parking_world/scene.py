@@ -71,7 +71,7 @@ def _things(f: F, found: F, slot: Array, parallel: Array, sign: Array) -> dict[i
     boxes[OVERHANG] = _overhang(f, parallel, sign)
     boxes[OPPOSITE] = {
         "x": 0.5 * slot,
-        "y": sign * (np.maximum(mouth + f["street"], _passed(f, found, slot)) + 0.9),
+        "y": sign * (np.maximum(mouth + f["street"], _passing_room(f, found, slot)) + 0.9),
         "length": np.where(f["opposite"] == NONE, 0.0, np.where(f["opposite"] == WALL, 60.0, 30.0)),
         "width": np.where(f["opposite"] == PARKED_CARS, 1.8, 1.0),
     }
@@ -101,7 +101,7 @@ def overhang_of(f: F) -> Array:
     return np.where((f["kind"] == 0) & (f["overhang"] != NONE), f["overhang_length"], 0.0)
 
 
-def _passed(f: F, found: F, slot: Array) -> Array:
+def _passing_room(f: F, found: F, slot: Array) -> Array:
     """Return y [m] up to which the driver who passes needs the road to be free."""
     heading, start = np.radians(f["heading"]), np.abs(found["vehicle.start.y"])
     end = start + (slot + PAST - found["vehicle.start.x"]) * np.tan(heading)

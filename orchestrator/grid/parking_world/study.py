@@ -25,7 +25,7 @@ from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
 from orchestrator.grid.world import study as world
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
@@ -44,7 +44,7 @@ MOST_ROWS = 20
 
 def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     """Return the study; ``system``: the number of ``controller.system`` that parks, on the same rows."""
-    space = Space(FACTORS, _stacked)
+    space = Space(FACTORS, _stack)
     shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
     seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
     shared = scenario(system)
@@ -58,7 +58,7 @@ def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     }
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     within = {GBT[kind]: world.limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
-    design = Design(_fields(shared), space.values(shares, seeds), seeds, space.named(shares))
+    design = Design(_fields(shared), space.values(shares, seeds), seeds, space.values_by_name(shares))
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, space)
 
 
@@ -68,17 +68,17 @@ def scenario(system: int) -> Scenario:
     update = {
         "name": "parking-world",
         "controller": {"system": system, **OF_SYSTEM.get(system, {})},
-        "requirements": [*shipped_requirements("no-contact")],
+        "requirements": [*library_requirements("no-contact")],
     }
     return base.model_copy(update=update)
 
 
 def _fields(shared: Scenario) -> list[Field]:
-    one = Space(FACTORS, _stacked)
-    return [find_field(name, shared) for name in parameters(one.named(one.nominal()[None]), np.array([1]))]
+    one = Space(FACTORS, _stack)
+    return [find_field(name, shared) for name in parameters(one.values_by_name(one.nominal()[None]), np.array([1]))]
 
 
-def _stacked(values: Mapping[str, Array], seeds: Seeds) -> Array:
+def _stack(values: Mapping[str, Array], seeds: Seeds) -> Array:
     return np.column_stack(list(parameters(values, seeds).values()))
 
 

@@ -27,7 +27,7 @@ MAX_SEARCH_SPEED = 3.6 * SearchParams().speed
 """The assist is asked for up to this speed [km/h]."""
 
 
-def asked(columns: Columns) -> Mapping[str, Array]:
+def feasibility_columns(columns: Columns) -> Mapping[str, Array]:
     """Return the two columns of ``COLUMNS``, 1 or 0 of each run."""
     found = (is_valid(columns), is_possible(columns))
     return {name: column.astype(float) for name, column in zip(COLUMNS, found, strict=True)}

@@ -13,10 +13,10 @@ from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.asked import COLUMNS, HEARD, asked
+from orchestrator.grid.world.asked import COLUMNS, HEARD, feasibility_columns
 from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Objective
 from orchestrator.verdict.measures import Measure, When
@@ -75,12 +75,12 @@ def _ends(columns: Columns, judge: Judge | None = None) -> Mapping[str, Array]:
     rows = [
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
-    touched = [None if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
+    touched = [None if math.isnan(row["touched.x"]) else first_contact(row) for row in rows]
     judge = end_of if judge is None else judge
     found = [judge(row, first) for row, first in zip(rows, touched, strict=True)]
     into = [end == CONTACT and is_driven_into(row, first) for row, end, first in zip(rows, found, touched, strict=True)]
     return {
-        **asked(columns),
+        **feasibility_columns(columns),
         "driven_into": np.array(into, dtype=float),
         "end": np.array(found, dtype=object),
         "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
@@ -136,7 +136,7 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
     """
     if row.get("mover", 0) < NOBODY:
         return False
-    way = math.copysign(min(abs(row["mover_way"]), _driven(row)), row["mover_way"])
+    way = math.copysign(min(abs(row["mover_way"]), _neighbour_travel(row)), row["mover_way"])
     margin = row["final.outline_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
     turned, aside, out, manoeuvres = _limits_of(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
@@ -157,15 +157,15 @@ def _margin(row: Mapping[str, Any], out: float) -> float:
 @cache
 def _limits_of(kind: int) -> tuple[float, ...]:
     """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its manoeuvres."""
-    return tuple(abs(float(item.limit)) for item in shipped_requirements(GBT_SETS[kind], *CLAIMED, "manoeuvres"))
+    return tuple(abs(float(item.limit)) for item in library_requirements(GBT_SETS[kind], *CLAIMED, "manoeuvres"))
 
 
-def _driven(row: Mapping[str, Any]) -> float:
+def _neighbour_travel(row: Mapping[str, Any]) -> float:
     """Return how far [m] a neighbour who moves could have come by the end of the run."""
     return float(max(0.0, row["duration"] - row["mover_at"]) * row["mover_speed"])
 
 
-def touched_first(row: Mapping[str, Any]) -> Touched:
+def first_contact(row: Mapping[str, Any]) -> Touched:
     """Return what the car is nearest to when it touches something for the first time."""
     pose = Pose(*(row[f"touched.{axis}"] for axis in AXES))
     things = _things(row)
@@ -239,7 +239,7 @@ def _clear(columns: Columns) -> Array:
 def _honest(columns: Columns) -> Array:
     """Return by how much a run that claims to be parked is within GB/T 41630, as a share of its limits."""
     heading, lateral = np.abs(columns["final.heading_error"]), np.abs(columns["final.lateral_error"])
-    turned, aside, out = (abs(float(item.limit)) for item in shipped_requirements("gbt41630", *CLAIMED))
+    turned, aside, out = (abs(float(item.limit)) for item in library_requirements("gbt41630", *CLAIMED))
     shares = [1.0 - heading / turned, 1.0 - lateral / aside, 1.0 + columns["final.outline_margin"] / out]
     least = np.minimum(np.min(shares, axis=0), 1.0)
     ends = np.asarray(columns["end"])

@@ -50,9 +50,9 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     """Return what differs from run to run, by the names of a study's fields."""
     cars = [CARS[name] for name in CARS]
     chosen = f["car"].astype(int)
-    told = _chosen([car_parameters(car) for car in cars], chosen)
+    told = _select([car_parameters(car) for car in cars], chosen)
     found = {f"{owner}.{name}": values for owner in ("vehicle", "controller") for name, values in told.items()}
-    size = _chosen([_size(car) for car in cars], chosen)
+    size = _select([_size(car) for car in cars], chosen)
     kind = f["kind"].astype(int)
     shortest = np.array([[shortest_slot(number, car, ISO) for number in KINDS] for car in cars])[chosen, kind]
     size = {**size, "slot": shortest + f["extra"], "parallel": kind == 0, "sign": 1.0 - 2.0 * f["side"]}
@@ -61,10 +61,10 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
     found |= _standing(f, size, neighbours) | _start(f, size, neighbours)
     found |= _sensors(f, told, seeds) | _motion(f, told)
-    return found | _person(f, size) | _mover(f, size) | _lost(f, told)
+    return found | _person(f, size) | _mover(f, size) | _sensor_faults(f, told)
 
 
-def _chosen(items: list[dict[str, float]], chosen: Array) -> dict[str, Array]:
+def _select(items: list[dict[str, float]], chosen: Array) -> dict[str, Array]:
     return {name: np.array([float(item[name]) for item in items])[chosen] for name in items[0]}
 
 
@@ -270,7 +270,7 @@ def _mover(f: F, size: F) -> dict[str, Array]:
     return found
 
 
-def _lost(f: F, told: F) -> dict[str, Array]:
+def _sensor_faults(f: F, told: F) -> dict[str, Array]:
     """Return what the controller hears of a sensor that fails: nothing in reach, or no number."""
     value = np.where(f["lost"] == NO_SENSOR, told["car.ultrasonic.max_range"], np.nan)
     found: dict[str, Array] = {}

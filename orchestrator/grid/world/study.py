@@ -28,7 +28,7 @@ from orchestrator.grid.world.ends import (
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import NEVER_TIME, SENSOR_COUNT, F, parameters
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
@@ -63,7 +63,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA) -> 
         "mild": mild,
     }
     shared = scenario(system)
-    design = Design(fields(), world.values(shares, seeds), seeds, world.named(shares))
+    design = Design(fields(), world.values(shares, seeds), seeds, world.values_by_name(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     if system != APA:
@@ -85,24 +85,24 @@ def scenario(system: int = APA) -> Scenario:
         ],
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
-        requirements=[*limits_beside_neighbours("gbt41630"), *shipped_requirements("no-contact")],
+        requirements=[*limits_beside_neighbours("gbt41630"), *library_requirements("no-contact")],
     )
 
 
 def fields() -> list[Field]:
     """Return the columns of the design."""
     shared = scenario()
-    one = Space(FACTORS, _stacked)
-    names = parameters(one.named(one.nominal()[None]), np.array([1]))
+    one = Space(FACTORS, _stack)
+    names = parameters(one.values_by_name(one.nominal()[None]), np.array([1]))
     return [find_field(name, shared) for name in names]
 
 
 def space(factors: list[Factor]) -> Space:
     """Return factors and what they mean."""
-    return Space(factors, _stacked)
+    return Space(factors, _stack)
 
 
-def _stacked(values: F, seeds: Seeds) -> Array:
+def _stack(values: F, seeds: Seeds) -> Array:
     return np.column_stack(list(parameters(values, seeds).values()))
 
 
@@ -110,7 +110,7 @@ def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
     ends, to = table.column("end"), console()
     to.print(_ends(ends, groups(table)))
-    for line in _parked_of_valid(table):
+    for line in _success_lines(table):
         to.print(line, highlight=False)
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
@@ -121,7 +121,7 @@ def report(table: Table, folder: Path) -> int:
     return 1 if len(worst) else 0
 
 
-def parked_of(table: Table) -> dict[str, tuple[int, int]]:
+def success_counts(table: Table) -> dict[str, tuple[int, int]]:
     """Return how many are parked, of how many.
 
     Of valid runs; of those of them that nobody walked into, which ends a run; of those whose task is possible too;
@@ -138,9 +138,9 @@ def parked_of(table: Table) -> dict[str, tuple[int, int]]:
     return {name: (int((ends[of] == PARKED).sum()), int(of.sum())) for name, of in chosen.items()}
 
 
-def _parked_of_valid(table: Table) -> list[str]:
+def _success_lines(table: Table) -> list[str]:
     lines = []
-    for name, (count, of) in parked_of(table).items():
+    for name, (count, of) in success_counts(table).items():
         share = 100.0 * count / max(of, 1)
         lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {percent_interval(count, of)})")
     return lines

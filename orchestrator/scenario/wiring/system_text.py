@@ -221,7 +221,7 @@ class SystemText(_SystemPart):
 
     @model_validator(mode="before")
     @classmethod
-    def _written(cls, given: Any) -> Any:
+    def _normalise(cls, given: Any) -> Any:
         if not isinstance(given, Mapping):
             return given
         slaves = given.get("components")

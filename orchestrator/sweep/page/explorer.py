@@ -8,7 +8,7 @@ import numpy as np
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import DONE, MISSED, Scenario
 from orchestrator.sweep.job import Job, chunk_scenario
-from orchestrator.sweep.page.statistics import Map, axis, deciding_limit, default_axes, for_people, varied
+from orchestrator.sweep.page.statistics import Map, axis, deciding_limit, default_axes, for_people, varying_columns
 from orchestrator.sweep.table import Table
 
 MAX_ROWS, MAX_ROWS_OF_CELL = 4_000, 60
@@ -22,10 +22,10 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
     """Return the runs in the cells of the maps as JSON; ``live``: the page that replays them, if there is one."""
     cells = max(1, sum(int((item.runs > 0).sum()) for item in shown))
     most = max(1, min(MAX_ROWS_OF_CELL, MAX_ROWS // cells))
-    chosen = _chosen(table, shown)
+    chosen = _runs_of_maps(table, shown)
     listed = [_rows_of(item, mask, most) for item, mask in zip(shown, chosen, strict=True)]
     rows = sorted({row for cell in listed for found in cell.values() for row in found})
-    keys = varied(table)[:MAX_KEYS]
+    keys = varying_columns(table)[:MAX_KEYS]
     data: dict[str, Any] = {
         "maps": [
             {
@@ -38,7 +38,7 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
             for item, cell in zip(shown, listed, strict=True)
         ],
         "heads": [*keys, "deciding limit"],
-        "rows": {row: _told(table, row, keys) for row in rows},
+        "rows": {row: _run_texts(table, row, keys) for row in rows},
     }
     if live:
         data |= _replays(table, rows, live)
@@ -67,7 +67,7 @@ def page_names(job: Job) -> list[str] | None:
     return [f"{owner}.{name}" for owner, name in pairs] if all(owner in known for owner, _ in pairs) else None
 
 
-def _chosen(table: Table, shown: list[Map]) -> list[Any]:
+def _runs_of_maps(table: Table, shown: list[Map]) -> list[Any]:
     """Return for each map which runs it has."""
     axes = default_axes(table)
     if axes is None or axes.split is None:
@@ -87,7 +87,7 @@ def _rows_of(item: Map, chosen: Any, most: int) -> dict[tuple[int, int], list[in
     return found
 
 
-def _told(table: Table, row: int, keys: list[str]) -> list[Any]:
+def _run_texts(table: Table, row: int, keys: list[str]) -> list[Any]:
     """Return outcome, its kind, reason, time [s], and the values of a run for people."""
     found = _columns(table)
     outcome = str(found["outcome"][row])
@@ -107,7 +107,7 @@ def _told(table: Table, row: int, keys: list[str]) -> list[Any]:
 def _columns(table: Table) -> dict[str, Any]:
     """Return the columns that lists need, read once."""
     if not hasattr(table, "columns_of_lists"):
-        names = ["outcome", "reason", "duration", *varied(table)[:MAX_KEYS]]
+        names = ["outcome", "reason", "duration", *varying_columns(table)[:MAX_KEYS]]
         table.columns_of_lists = {name: table.column(name) for name in names}  # type: ignore[attr-defined]
     found: dict[str, Any] = table.columns_of_lists  # type: ignore[attr-defined]
     return found

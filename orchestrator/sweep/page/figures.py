@@ -32,7 +32,7 @@ def short(value: float) -> str:
     return f"{value:.0f}" if 1000.0 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
-def named(axis: Axis) -> str:
+def axis_name(axis: Axis) -> str:
     """Return the name of an axis with its unit, if it has one."""
     return axis.name if axis.unit == "1" else f"{axis.name} [{axis.unit}]"
 
@@ -135,7 +135,7 @@ def _middle(places: Sequence[float], cell: int) -> float:
 def _axis_x(axis: Axis, places: Sequence[float]) -> list[str]:
     cells = _apart(places, (WIDTH - LEFT - RIGHT) / MOST_TICKS)
     lines = _ticks_x([axis.labels[cell] for cell in cells], [_middle(places, cell) for cell in cells], HEIGHT)
-    label = html.escape(named(axis))
+    label = html.escape(axis_name(axis))
     return [
         *lines,
         f'<text class="title" x="{(LEFT + WIDTH) / 2:.1f}" y="{HEIGHT - 8:.1f}" text-anchor="middle">{label}</text>',
@@ -148,7 +148,7 @@ def _axis_y(axis: Axis, places: Sequence[float]) -> list[str]:
         at = f'x="{LEFT - 6}" y="{_middle(places, cell) + 4:.1f}"'
         lines.append(f'<text class="tick" {at} text-anchor="end">{html.escape(axis.labels[cell])}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
-    label = html.escape(named(axis))
+    label = html.escape(axis_name(axis))
     turned = f'transform="rotate(-90 12 {middle:.1f})"'
     return [*lines, f'<text class="title" x="12" y="{middle:.1f}" text-anchor="middle" {turned}>{label}</text>']
 

@@ -17,12 +17,12 @@ from orchestrator.sweep.page.explorer import explorer_data
 from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
 from orchestrator.sweep.page.statistics import (
     deciding_limit,
-    done,
     for_people,
     influences,
     maps,
     outcome_counts,
-    varied,
+    success_mask,
+    varying_columns,
     word,
     worst,
 )
@@ -66,7 +66,7 @@ def write_page(path: Path, live: str = "") -> Path:
 def study_page(table: Table, live: str = "") -> str:
     """Return the page; ``live``: the page beside it that replays runs, empty if there is none."""
     study = table.about["study"]
-    good = done(table)
+    good = success_mask(table)
     share = 100.0 * good.mean()
     groups = _groups(table)
     cards = [_maps(table), _reasons(table), _histograms(table), _influences(table), _worst(table), _about(table)]
@@ -154,7 +154,7 @@ def _reasons(table: Table) -> str:
 
 
 def _histograms(table: Table) -> str:
-    good = done(table)
+    good = success_mask(table)
     figures = []
     for name in HISTOGRAMS:
         if name in table.names():
@@ -196,7 +196,7 @@ def _influences(table: Table) -> str:
 
 def _worst(table: Table) -> str:
     rows = []
-    keys = varied(table)
+    keys = varying_columns(table)
     for number in worst(table, WORST_ROWS):
         row = table.row(number)
         replay = table.path.parent / REPLAYS.format(number) / "report.html"

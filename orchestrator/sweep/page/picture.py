@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from orchestrator.drawing.save import save
-from orchestrator.sweep.page.figures import named
+from orchestrator.sweep.page.figures import axis_name
 from orchestrator.sweep.page.statistics import Map, maps, word
 from orchestrator.sweep.table import Table
 
@@ -37,4 +37,4 @@ def draw_maps(table: Table, path: Path) -> None:
 
 def _label(item: Map, side: str) -> str:
     axis = item.x if side == "x" else item.y
-    return named(axis._replace(name=SHORT.get(axis.name, axis.name)))
+    return axis_name(axis._replace(name=SHORT.get(axis.name, axis.name)))

@@ -16,7 +16,7 @@ from orchestrator.text.quantities import RAD_PER_DEGREE
 from orchestrator.text.readable import readable
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import required_text
+from orchestrator.verdict.limit_text import requirement_text
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""
@@ -63,7 +63,7 @@ def for_people(unit: str) -> tuple[float, str]:
     return (1.0 / RAD_PER_DEGREE, unit.replace("rad", "deg")) if unit.startswith("rad") else (1.0, unit)
 
 
-def varied(table: Table) -> list[str]:
+def varying_columns(table: Table) -> list[str]:
     """Return what tells the runs apart: labels, or else the parameters that differ; of those that agree the first."""
     found: dict[str, Any] = {}
     for key in table.labels or table.job.keys:
@@ -73,7 +73,7 @@ def varied(table: Table) -> list[str]:
     return list(found)
 
 
-def done(table: Table) -> NDArray[np.bool_]:
+def success_mask(table: Table) -> NDArray[np.bool_]:
     """Return which runs have done their task."""
     found: NDArray[np.bool_] = np.isin(table.column("outcome").astype(str), list(DONE))
     return found
@@ -117,7 +117,7 @@ def deciding_limit(table: Table, number: int) -> str:
         violation = -margin / abs(limit.limit) if limit.limit else -margin
         if violation > worst_share:
             unit = RESULTS[limit.signal].unit if limit.signal in RESULTS else "1"
-            worst_share, text = violation, f"{limit.id}: {readable(float(value), unit)} ({required_text(limit)})"
+            worst_share, text = violation, f"{limit.id}: {readable(float(value), unit)} ({requirement_text(limit)})"
     return text
 
 
@@ -165,7 +165,7 @@ def maps(table: Table) -> list[Map]:
     if axes is None:
         return []
     x, y = axis(table, axes.x), axis(table, axes.y)
-    good = done(table)
+    good = success_mask(table)
     if axes.split is None:
         return [_map("", x, y, good, np.ones(len(good), dtype=bool))]
     split = axis(table, axes.split)
@@ -183,14 +183,14 @@ def _map(title: str, x: Axis, y: Axis, good: NDArray[np.bool_], chosen: NDArray[
 def influences(table: Table) -> list[Influence]:
     """Return what every varied parameter does to the results, the strongest on success first."""
     results: dict[str, Any] = {
-        word(table): done(table).astype(np.float64),
+        word(table): success_mask(table).astype(np.float64),
         "duration": table.column("duration"),
     }
     errors = np.abs(table.column("final.lateral_error"))
     results |= {"lateral error": errors} if np.isfinite(errors).all() else {}
     ranks = {name: rankdata(values) for name, values in results.items()}
     found = []
-    for key in varied(table):
+    for key in varying_columns(table):
         cut = axis(table, key)
         own = rankdata(cut.cell if table.column(key).dtype == object else table.column(key))
         shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
@@ -226,5 +226,5 @@ def _correlation(a: Array, b: Array) -> float:
 def worst(table: Table, count: int) -> list[int]:
     """Return the rows that are furthest beyond their limits, those that have not done their task first."""
     share = np.nan_to_num(table.column("limit_share"), nan=np.inf)
-    order = np.lexsort((-share, done(table)))
+    order = np.lexsort((-share, success_mask(table)))
     return [int(row) for row in order[:count]]

@@ -31,9 +31,9 @@ def design_of(cases: Iterable[LabelledScenario]) -> tuple[Scenario, Design]:
     """
     labels, scenarios = zip(*cases, strict=True)
     shared = scenarios[0]
-    fixed = _shared_values(shared)
+    fixed = _common_values(shared)
     for scenario in scenarios:
-        unlike = [key for key, value in _shared_values(scenario).items() if value != fixed[key]]
+        unlike = [key for key, value in _common_values(scenario).items() if value != fixed[key]]
         if unlike:
             raise ValueError(f"the scenarios of a study may differ in numbers only, not in {', '.join(unlike)}")
     columns = {key: np.array(values, dtype=float) for key, values in _numbers(scenarios).items()}
@@ -55,7 +55,7 @@ def with_samples(design: Design, samples: Mapping[Field, Array]) -> Design:
     return Design(fields, values, np.repeat(design.seeds, count), labels)
 
 
-def _shared_values(scenario: Scenario) -> dict[str, Any]:
+def _common_values(scenario: Scenario) -> dict[str, Any]:
     """Return what must be the same in all runs: of target and slot whether there is one."""
     numbers = {*MODELS, *(key.partition(".")[0] for key in (*SCENARIO_FIELDS, *TRUE_FIELDS))}
     there = {owner: getattr(scenario, owner) is not None for owner in TRUE_OWNERS}

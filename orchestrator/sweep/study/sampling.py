@@ -42,7 +42,7 @@ def make_design(study: StudyFile, scenario: Scenario) -> Design:
     for stream, samples in enumerate((study.runs.monte_carlo, study.runs.latin_hypercube)):
         if samples is not None:
             count = samples.n
-            sampled += _sampled_columns(samples, stream == 1, [study.seed, stream], scenario)
+            sampled += _sample_columns(samples, stream == 1, [study.seed, stream], scenario)
     points = math.prod(len(column.values) for column in grid)
     columns = _cross_columns(grid, count) + [
         _Column(column.fields, np.tile(column.values, points)) for column in sampled
@@ -99,7 +99,7 @@ def _grid_column(key: str, values: list[Any] | Range, scenario: Scenario) -> _Co
     return _Column(fields, np.array([_check_value(item, fields) for item in raw]))
 
 
-def _sampled_columns(samples: Samples, latin: bool, seed: list[int], scenario: Scenario) -> list[_Column]:
+def _sample_columns(samples: Samples, latin: bool, seed: list[int], scenario: Scenario) -> list[_Column]:
     rng = np.random.default_rng(seed)
     size = len(samples.spreads)
     if size == 0:

@@ -53,9 +53,9 @@ class Space(NamedTuple):
 
     def values(self, shares: Array, seeds: Seeds) -> Array:
         """Return the lines of a design at points (n, factors) of the unit cube."""
-        return self.place(self.named(shares), seeds)
+        return self.place(self.values_by_name(shares), seeds)
 
-    def named(self, shares: Array) -> dict[str, Array]:
+    def values_by_name(self, shares: Array) -> dict[str, Array]:
         """Return the values of the factors at points of the unit cube, by name."""
         return {factor.name: factor.at(column) for factor, column in zip(self.factors, shares.T, strict=True)}
 

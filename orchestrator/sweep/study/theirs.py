@@ -38,10 +38,13 @@ def signals_of(scenario: Scenario) -> dict[str, Signal]:
         for cls in (model.inputs, model.outputs)
         for item in variables(cls)
     }
-    return {**ours, **{name: item for slave, path in files_of(scenario).items() for name, item in _told(slave, path)}}
+    return {
+        **ours,
+        **{name: item for slave, path in files_of(scenario).items() for name, item in _fmu_signals(slave, path)},
+    }
 
 
-def declared(scenario: Scenario, *signals: str) -> list[Variable | None]:
+def declare_signals(scenario: Scenario, *signals: str) -> list[Variable | None]:
     """Return signals as system or models of ``scenario`` have them, states that an FMU or a role names included.
 
     None for one that it has not.
@@ -66,7 +69,7 @@ def hashes_of(scenario: Scenario) -> dict[str, str]:
     return {slave: sha256_of(path) for slave, path in files_of(scenario).items()}
 
 
-def _told(slave: str, path: Path) -> list[tuple[str, Signal]]:
+def _fmu_signals(slave: str, path: Path) -> list[tuple[str, Signal]]:
     description = read_description(path)
     ports = [ports_of(description, causality, MODELS.get(slave), path) for causality in ("input", "output")]
     return [(f"{slave}.{item.name}", item.signal) for part in ports for item in part.variables]

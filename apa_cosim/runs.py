@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import yaml
 
 from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.kinds import default_kind
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.log.read_log import log_file, read_info
 from orchestrator.log.read_log import read_log as read_recording
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Foreign, fitting, fmu_of, load_fitting, parameters_of
+from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, load_bound_scenario, parameters_of
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.logged import read_logged_run
@@ -126,7 +126,7 @@ def load_scenario(name: str | Path, changes: Changes | None = None) -> Scenario:
 
     Raises ``BadInput`` with file, key, value and what would be right.
     """
-    return load_fitting(str(name), _sets(changes), Foreign()).scenario
+    return load_bound_scenario(str(name), _sets(changes), ImportedFmus()).scenario
 
 
 def run(
@@ -144,7 +144,7 @@ def run(
     there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: somebody
     else's FMU, or a model ``law.py:MODEL``, in the place of ours. Raises ``BadInput``.
     """
-    given = Foreign(
+    given = ImportedFmus(
         {name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path}
     )
     chosen, foreign = with_foreign(scenario, changes, given)
@@ -154,7 +154,7 @@ def run(
 
 
 def record_scenario(
-    scenario: Scenario, kind: str, foreign: Foreign, log: Path | None = None
+    scenario: Scenario, kind: str, foreign: ImportedFmus, log: Path | None = None
 ) -> tuple[Recording, Summary]:
     """Return what a scenario's run has recorded, and its verdict; FMUs of ``kind`` are built if need be."""
     files = {} if kind == "none" else fmu_files(kind)
@@ -162,16 +162,18 @@ def record_scenario(
     return ran.recording, summarize(ran.recording, scenario, ran.wall_time)
 
 
-def with_foreign(scenario: str | Path | Scenario, changes: Changes | None, given: Foreign) -> tuple[Scenario, Foreign]:
+def with_foreign(
+    scenario: str | Path | Scenario, changes: Changes | None, given: ImportedFmus
+) -> tuple[Scenario, ImportedFmus]:
     """Return a scenario, and the FMUs of others that it is run with: ``given`` ones and its own system's."""
     if not isinstance(scenario, Scenario):
-        fitted = load_fitting(str(scenario), _sets(changes), given)
+        fitted = load_bound_scenario(str(scenario), _sets(changes), given)
         return fitted.scenario, fitted.foreign
     if changes:
         raise TypeError("changes are made when a scenario is loaded: load_scenario(name, changes)")
     given = given.with_system(scenario.system)
-    own = {slave: parameters_of(path, slave) for slave, path in given.files.items()}
-    return fitting(scenario, own)[0], given
+    own = {instance: parameters_of(path, instance) for instance, path in given.files.items()}
+    return bind_parameters(scenario, own)[0], given
 
 
 def read_log(path: Path | str) -> Run:

@@ -8,12 +8,12 @@ import pytest
 
 from apa_cosim.runs import Run, record_scenario, with_foreign
 from apa_cosim.verdicts import judge
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.kinds import default_kind
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import ImportedFmus
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, load_step_test
@@ -133,6 +133,6 @@ def _kind(config: pytest.Config) -> str:
     return str(config.getoption("--apa-fmus") or default_kind())
 
 
-def _foreign(config: pytest.Config) -> Foreign:
+def _foreign(config: pytest.Config) -> ImportedFmus:
     given = {name: config.getoption(f"--apa-{name}") for name in ("controller", "vehicle")}
-    return Foreign({name: Path(str(path)) for name, path in given.items() if path})
+    return ImportedFmus({name: Path(str(path)) for name, path in given.items() if path})

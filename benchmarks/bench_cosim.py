@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.results import record, size
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.session import Ran, run_scenario
+from orchestrator.session.session import SimulationResult, run_scenario
 
 ROUNDS = size(5, 1)
 
@@ -21,7 +21,7 @@ def main() -> None:
     scenario = load_scenario("guo2015-case4")
     python, native = (fmu_files(kind, lambda text: None) for kind in ("python", "native"))
     folder = Path(tempfile.mkdtemp())
-    runs: dict[str, Callable[[], Ran]] = {
+    runs: dict[str, Callable[[], SimulationResult]] = {
         "models in process": lambda: run_scenario(scenario),
         "PythonFMUs": lambda: run_scenario(scenario, python, kind="python"),
         "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=folder / "python.mcap"),

@@ -19,10 +19,10 @@ from benchmarks.results import record, size
 from fmus.compiled_batch import compile_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
+from orchestrator.cosim.algorithm import CoSimulation
 from orchestrator.cosim.compiled_master import CompiledMaster
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.fmu_slave import FmuSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.local_instance import LocalInstance
 from orchestrator.export.system_of import system_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
@@ -38,14 +38,15 @@ Loop = Callable[[], float]
 """Drives STEPS steps and returns the seconds they took, without loading and initializing."""
 
 
-def master_loop(make: type[Master], files: Files, scenario: Scenario, clock: Loop = time.perf_counter) -> Loop:
+def master_loop(make: type[CoSimulation], files: Files, scenario: Scenario, clock: Loop = time.perf_counter) -> Loop:
     """Return a loop by one of our masters."""
 
     def loop() -> float:
-        slaves = [
-            FmuSlave(name, path, getattr(scenario, name), lambda *_: None, MODELS[name]) for name, path in files.items()
+        instances = [
+            LocalInstance(name, path, getattr(scenario, name), lambda *_: None, MODELS[name])
+            for name, path in files.items()
         ]
-        master = make(list(slaves), scenario.step_ns, STEPS * scenario.step_ns)
+        master = make(list(instances), scenario.step_ns, STEPS * scenario.step_ns)
         master.initialize()
         begun = clock()
         master.run()
@@ -96,8 +97,8 @@ def main() -> None:
     python, native = (fmu_files(kind, print) for kind in ("python", "native"))
     folder = Path(tempfile.mkdtemp(prefix="apa_bench_"))
     loops = {
-        "PythonFMUs, our Python master": master_loop(Master, python, scenario),
-        "native, FMI calls from Python": master_loop(Master, native, scenario),
+        "PythonFMUs, our Python master": master_loop(CoSimulation, python, scenario),
+        "native, FMI calls from Python": master_loop(CoSimulation, native, scenario),
         "native, libcosim": libcosim_loop(write_ssp(system_of(scenario, folder, "native"), folder / "native.ssp")),
         "native, compiled master": master_loop(CompiledMaster, native, scenario),
         "limit: no FMI at all": in_process_loop(scenario),

@@ -23,7 +23,7 @@ from controller_fmu.parking.params import ParkingSystem
 from controller_fmu.policy.params import PolicySystem
 from controller_fmu.valet.params import ValetSystem
 from modelkit.composition import make_named_tuple, merge_records
-from modelkit.model import Model, SampledSystem, SampledSystems, View
+from modelkit.model import Model, SampledSystem, SampledSystems, Variant
 from modelkit.signal import Signal
 from modelkit.states import union
 from modelkit.terminals import TERMINALS
@@ -161,7 +161,7 @@ MODEL = Model(
     terminals=TERMINALS,
     systems=SYSTEMS,
     sampled=True,
-    view=View(states=(("system", SYSTEM_CHOICES),)),
+    view=Variant(states=(("system", SYSTEM_CHOICES),)),
 )
 SYSTEM_MODELS: dict[IntEnum, Model] = {
     choice: MODEL.only(choice, f"Controller_{choice.name.lower()}", description)

@@ -7,15 +7,15 @@ from marked import put
 
 from orchestrator.catalogue.run import judge_standards
 from orchestrator.catalogue.show import count_text, markdown
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.master import Interrupt
-from orchestrator.session.foreign import Foreign
-from orchestrator.suite.suite import Bench
+from orchestrator.session.foreign import ImportedFmus
+from orchestrator.suite.suite import SuiteConfig
 
 
 def tables(words: list[str]) -> list[str]:
     """Return the tables of the standards that ``words`` mean, after running what tests them."""
-    bench = Bench(fmu_files("native", print), "native", Foreign(), [], Interrupt())
+    bench = SuiteConfig(fmu_files("native", print), "native", ImportedFmus(), [], Interrupt())
     with TemporaryDirectory() as folder:
         verdicts = judge_standards(words, bench, Path(folder))
     return [f"In all: {count_text(verdicts)}.", "", markdown(verdicts)]

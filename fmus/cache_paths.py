@@ -50,5 +50,5 @@ def _temporary() -> Path:
 
 
 DIST = build_folder()
-LIBRARIES = DIST / "lib"
-CACHE = DIST / "cache"
+LIBRARY_FOLDER = DIST / "lib"
+CACHE_FOLDER = DIST / "cache"

@@ -2,7 +2,7 @@
 
 The models' code is the native FMU's, from the same C; the exchange is ``native/c/batch.c``, told by tables what is
 connected to what. The tables are made from the types: an output and an input of the same name are connected. Only
-:class:`Ending` and :class:`Kept` name signals.
+:class:`StopCondition` and :class:`RecordedSignal` name signals.
 """
 
 import ctypes
@@ -33,7 +33,7 @@ FAULT_NUMBERS = 4
 the probability, the age [ns], the standard deviation."""
 
 
-class When(NamedTuple):
+class SampleTime(NamedTuple):
     """The instants at which a mode has one of some values."""
 
     signal: str
@@ -41,7 +41,7 @@ class When(NamedTuple):
     """From 0 to 63."""
 
 
-class Kept(NamedTuple):
+class RecordedSignal(NamedTuple):
     """One number kept of a run; NaN if there is no instant to take it from."""
 
     how: How
@@ -49,11 +49,11 @@ class Kept(NamedTuple):
     ``first``; ``time``: of the first instant [s]."""
     signal: str
     """An output, ``vehicle.speed``; or an input as its model saw it."""
-    when: When | None = None
+    when: SampleTime | None = None
     """The instants that count; None: all."""
 
 
-class Disturbed(NamedTuple):
+class FaultInputs(NamedTuple):
     """Inputs of one model that a fault disturbs."""
 
     kind: str
@@ -64,7 +64,7 @@ class Disturbed(NamedTuple):
     """Of its inputs."""
 
 
-class Ending(NamedTuple):
+class StopCondition(NamedTuple):
     """A run is over when a mode has a final value and a speed has been small for a time."""
 
     mode: str
@@ -98,7 +98,7 @@ BatchC = structure(
 FaultC = structure("FaultC", kind=Long, model=Long, first=Long, count=Long)
 
 
-def signals_to_read(ending: Ending | None, kept: Sequence[Kept]) -> frozenset[str]:
+def signals_to_read(ending: StopCondition | None, kept: Sequence[RecordedSignal]) -> frozenset[str]:
     """Return the signals that decide when runs are over, and those that are kept of them."""
     found = {item.signal for item in kept} | {item.when.signal for item in kept if item.when is not None}
     return frozenset(found if ending is None else found | {ending.mode, ending.speed})
@@ -106,9 +106,9 @@ def signals_to_read(ending: Ending | None, kept: Sequence[Kept]) -> frozenset[st
 
 def compile_rows(
     models: Mapping[str, Model],
-    ending: Ending | None,
-    kept: Sequence[Kept],
-    faults: Sequence[Disturbed] = (),
+    ending: StopCondition | None,
+    kept: Sequence[RecordedSignal],
+    faults: Sequence[FaultInputs] = (),
     code: StudyCode | None = None,
 ) -> Rows:
     """Return the compiled runs; of ``code``, made for this study (slices with :func:`signals_to_read`), or None.
@@ -149,9 +149,9 @@ class BatchTables:
     def __init__(
         self,
         models: Mapping[str, Model],
-        ending: Ending | None,
-        kept: Sequence[Kept],
-        faults: Sequence[Disturbed],
+        ending: StopCondition | None,
+        kept: Sequence[RecordedSignal],
+        faults: Sequence[FaultInputs],
         code: StudyCode | None,
     ) -> None:
         self._held: list[Any] = []
@@ -166,7 +166,7 @@ class BatchTables:
             load_model(model) if code is None else load_model(model, code.slices[name], code.options)
             for name, model in models.items()
         ]
-        end = ending or Ending("", (), "", 0.0, 0)
+        end = ending or StopCondition("", (), "", 0.0, 0)
         found = [self.signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
         self._batch = BatchC(
             self.array(Pointer, [library.model_library() for library in libraries]),
@@ -187,7 +187,7 @@ class BatchTables:
         self.width = sum(len(variables(model.params)) for model in models.values())
         self._held += libraries
 
-    def _note(self, item: Kept) -> Any:
+    def _note(self, item: RecordedSignal) -> Any:
         when, values = SignalC(0, 0, 0), 0
         if item.when is not None:
             when, values = self.signal(item.when.signal), bits(item.when.values)
@@ -204,7 +204,7 @@ class BatchTables:
         return ctypes.addressof(held)
 
 
-def _plan(faults: Sequence[Disturbed], number: int) -> Any:
+def _plan(faults: Sequence[FaultInputs], number: int) -> Any:
     first = sum(len(fault.places) for fault in faults[:number])
     fault = faults[number]
     return FaultC(FAULTS.index(fault.kind), fault.model, first, len(fault.places))

@@ -5,7 +5,7 @@ import math
 import typing
 from typing import Any, NamedTuple
 
-from fmus.compiler import Refusal
+from fmus.compiler import Diagnostic
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.types import NoKindError, hints_of, is_named_tuple, kind_of
 from fmus.contents.units import unit
@@ -31,9 +31,9 @@ class _Wrong(Exception):  # noqa: N818
     """What is wrong with a field, and what to write."""
 
 
-def field_refusals(model: Model) -> list[Refusal]:
+def field_refusals(model: Model) -> list[Diagnostic]:
     """Return what is wrong with the fields of parameters, inputs, outputs and state."""
-    library, found, done = Library(), list[Refusal](), set[Any]()
+    library, found, done = Library(), list[Diagnostic](), set[Any]()
     public: list[Any] = [model.params, model.inputs, model.outputs]
     todo: list[tuple[Any, bool]] = [*((cls, True) for cls in public), (model.state, False)]
     while todo:
@@ -45,7 +45,7 @@ def field_refusals(model: Model) -> list[Refusal]:
         file = library.module(cls.__module__).file
         lines = _lines(node)
         found += [
-            Refusal(file, line, f"{cls.__name__}.{name} has no type", f"write {name}: float = {text}")
+            Diagnostic(file, line, f"{cls.__name__}.{name} has no type", f"write {name}: float = {text}")
             for name, (line, text) in _fields_without_type(node).items()
         ]
         for name, hint in hints_of(cls).items():
@@ -55,14 +55,14 @@ def field_refusals(model: Model) -> list[Refusal]:
                 todo += [(inner, needs_signal) for inner in _check_field(field, needs_signal)]
             except NoKindError as error:
                 what = f"{cls.__name__}.{name} is {error.what}"
-                found.append(Refusal(file, lines.get(name, 1), what, error.advice))
+                found.append(Diagnostic(file, lines.get(name, 1), what, error.advice))
             except _Wrong as error:
                 what, advice = error.args
-                found.append(Refusal(file, lines.get(name, 1), f"{cls.__name__}.{name} {what}", advice))
+                found.append(Diagnostic(file, lines.get(name, 1), f"{cls.__name__}.{name} {what}", advice))
     return sorted({*found, *_store_refusals(model, library)})
 
 
-def _store_refusals(model: Model, library: Library) -> list[Refusal]:
+def _store_refusals(model: Model, library: Library) -> list[Diagnostic]:
     """Return what is wrong with the columns of a model's store."""
     if model.store is None:
         return []
@@ -72,7 +72,7 @@ def _store_refusals(model: Model, library: Library) -> list[Refusal]:
         columns_of(model.store)
     except TypeError as error:
         name, _, advice = str(error).partition(": ")
-        return [Refusal(file, lines.get(name.rpartition(".")[2], 1), f"{name} is no column of a store", advice)]
+        return [Diagnostic(file, lines.get(name.rpartition(".")[2], 1), f"{name} is no column of a store", advice)]
     return []
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from fmus.build import Built, build_all
-from fmus.compiler import Refused, translate
+from fmus.compiler import UnsupportedError, translate
 from fmus.model_fields import field_refusals
 from fmus.native.c_library import write_c_library
 from modelkit.model import Model
@@ -43,7 +43,7 @@ def own_model(text: str) -> Model:
         raise BadModel(f"{place}: the package of {name} is another one: write sys.modules[__name__]")
     refusals = field_refusals(model)
     if refusals:
-        raise BadModel(str(Refused(refusals)))
+        raise BadModel(str(UnsupportedError(refusals)))
     return model
 
 
@@ -70,7 +70,7 @@ def lines_of(model: Model) -> Iterator[None]:
     """Turn what a model's own functions raise, and what makers of FMUs say about it, into ``BadModel``."""
     try:
         yield
-    except Refused as error:
+    except UnsupportedError as error:
         raise BadModel(str(error)) from error
     except Exception as error:
         file = Path(str(model.package.__file__))

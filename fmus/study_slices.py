@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from fmus.cache_paths import CACHE
+from fmus.cache_paths import CACHE_FOLDER
 from fmus.compiler import live_inputs
 from fmus.compiler.slicing import Slice
 from fmus.locks import cache_file
@@ -44,7 +44,7 @@ def study_slices(
         found = _solve(models, used, choices)
         return json.dumps({name: sorted(item.outputs) for name, item in found.items()}).encode()
 
-    kept = json.loads(cache_file(CACHE, "slices", key, ".slices.json", make, CACHED_TRANSLATIONS).read_bytes())
+    kept = json.loads(cache_file(CACHE_FOLDER, "slices", key, ".slices.json", make, CACHED_TRANSLATIONS).read_bytes())
     return {name: Slice(frozenset(outputs), choices.get(name)) for name, outputs in kept.items()}
 
 

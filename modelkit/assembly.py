@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import Annotated, Any, NamedTuple, cast
 
 from modelkit.connections import Wire, connections, part_of
-from modelkit.model import Assembly, Model, View
+from modelkit.model import Assembly, Model, Variant
 from modelkit.signal import Role
 from modelkit.variables import constructor, flatten, variables
 
@@ -47,7 +47,7 @@ def assemble(
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
     outputs = {part: (_output_field(model), model.outputs()) for part, model in own.parts}
-    whole = Together(own, _tuple(f"{name}State", memory, package), _tuple(f"{name}Outputs", outputs, package))
+    whole = CompositeModel(own, _tuple(f"{name}State", memory, package), _tuple(f"{name}Outputs", outputs, package))
     return Model(
         name=name,
         description=description,
@@ -60,7 +60,7 @@ def assemble(
         step=whole.step if store is None else whole.step_with_store,
         step_size=period_ns * 1e-9,
         stop_time=max(model.stop_time for _, model in own.parts),
-        view=View(hidden=frozenset(_hidden(own))),
+        view=Variant(hidden=frozenset(_hidden(own))),
         assembly=own,
         store=store,
     )
@@ -75,7 +75,7 @@ def _memory(own: Assembly) -> dict[str, tuple[Any, Any]]:
     return memory
 
 
-class Together(NamedTuple):
+class CompositeModel(NamedTuple):
     """The two functions of an assembly."""
 
     assembly: Assembly

@@ -132,7 +132,7 @@ class Terminal(NamedTuple):
     """
 
 
-class View(NamedTuple):
+class Variant(NamedTuple):
     """What of a model is shown to others, if not all of it, and how it starts. The code is the same."""
 
     starts: tuple[tuple[str, Any], ...] = ()
@@ -187,7 +187,7 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
     """Groups of its inputs and outputs; none: all inputs are one and all outputs another."""
     sampled: bool = False
     """It acts at instants of its own and holds its outputs between them."""
-    view: View = View()
+    view: Variant = Variant()
     assembly: Assembly | None = None
     """What it is made of, if that is several models."""
     store: type[Any] | None = None
@@ -239,7 +239,7 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         known = [item.name for cls in (self.params, self.inputs, self.outputs) for item in variables(cls)]
         parameter = self.systems.parameter
         hidden = frozenset(known) - _those_in(chosen.own, known) | {parameter}
-        view = View(((parameter, int(value)),), hidden, chosen.states)
+        view = Variant(((parameter, int(value)),), hidden, chosen.states)
         return self._replace(name=name, description=description, view=view)
 
     def all_charts(self) -> list[Chart]:

@@ -19,7 +19,7 @@ COST_OF_SLOW = 1.0
 LOWEST_RECORDED = 0.2
 """Functions below this [s] are not in the table: 95 of 100 lines would say that a test costs nothing."""
 NOT_MEASURED = (
-    "orchestrator/test_fmu_slave.py",
+    "orchestrator/test_fmu_instance.py",
     "orchestrator/test_new.py",
     "orchestrator/test_new_ci.py",
     "orchestrator/test_recover.py",

@@ -201,7 +201,7 @@ def test_functions_are_short_and_few_take_many_parameters() -> None:
 ONE_MEANING = {
     "Box": "a rectangle in the plane: of the scene, of the judge, of the outline",
     "EndParams": "when a system counts the car as parked",
-    "Ending": "what ends a run before its stop time: in Python, in the batch in C",
+    "StopCondition": "what ends a run before its stop time: in Python, in the batch in C",
     "Guard": "the conditions of a chart, one bit each",
     "Kerb": "a straight kerb: of the scene, of the judge",
     "Move": "what is driven up to the next change of direction",
@@ -214,7 +214,6 @@ ONE_MEANING = {
     "Step": "the states of a chart of one manoeuvre",
     "Tracked": "where the car is along what it drives",
     "Watch": "the clocks of a monitor",
-    "When": "the instants at which a mode has one of some values",
 }
 """Classes of one name in several rooms that do not import each other, and what the name means in all of them."""
 

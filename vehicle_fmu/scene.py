@@ -98,18 +98,18 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time
     nearest = NO_HIT
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns), True)
+            nearest = nearest_of(nearest, body, obstacle_box(obstacle, time_ns), True)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
             part = body
             if kerb.height < scene.ground_clearance:
                 part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            nearest = nearer(nearest, part, line, kerb.height >= kerb_height)
+            nearest = nearest_of(nearest, part, line, kerb.height >= kerb_height)
     return nearest
 
 
-def nearer(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> float:
+def nearest_of(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> float:
     """Return the smaller of ``nearest`` and the gap of car and thing, which is negative inside an obstacle."""
     if nearest > 0.0 and centre_gap(car.box, thing) >= nearest:
         return nearest

@@ -41,7 +41,7 @@ class UltrasonicParams(NamedTuple):
     seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
 
 
-class Ear(NamedTuple):
+class RangeSensor(NamedTuple):
     """What turns an exact distance into a reading."""
 
     min_range: float
@@ -79,7 +79,7 @@ def measure(
 ) -> UltrasonicState:
     """Return new readings [m] of all sensors of a car at ``pose``."""
     random = state.random
-    ear = Ear(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
+    ear = RangeSensor(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
     readings = state.readings
     for distance in range_measurements(pose, scene, sensors, params.kerb_height, time_ns):
         random, reading = _reading(random, distance, ear)
@@ -143,7 +143,7 @@ def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: 
     return min(nearest, cone_gap(cone, seen.box, seen.corners))
 
 
-def _reading(random: int, distance: float, ear: Ear) -> tuple[int, float]:
+def _reading(random: int, distance: float, ear: RangeSensor) -> tuple[int, float]:
     """Return the generator and a reading; with neither noise nor dropout nothing is drawn by lot."""
     chance = 1.0
     error = 0.0

@@ -56,7 +56,7 @@ def bend_of(radius: float, ramp: float) -> Bend:
     return Bend(radius, ramp, end.heading, rho, end.x - radius * math.sin(end.heading))
 
 
-def swing_way(speed: float, radius: float, wheel: SteeringLimits) -> float:
+def swing_distance(speed: float, radius: float, wheel: SteeringLimits) -> float:
     """Return the way [m] driven at ``speed`` [m/s] while the wheel swings from straight to ``radius`` [m]."""
     return speed * math.atan(wheel.wheelbase / radius) / wheel.rate
 
@@ -115,7 +115,7 @@ def arc_in(start: Pose, speed: float, wheel: SteeringLimits, rest: float) -> Rou
             low = middle
         else:
             high = middle
-    bend = bend_of(low, swing_way(speed, low, wheel))
+    bend = bend_of(low, swing_distance(speed, low, wheel))
     arc = h - bend.angle
     left = start.x - low * math.sin(h) - bend.tangent
     if arc < 0.0 or left < rest:
@@ -126,7 +126,7 @@ def arc_in(start: Pose, speed: float, wheel: SteeringLimits, rest: float) -> Rou
 
 def _above(start: Pose, radius: float, speed: float, wheel: SteeringLimits) -> float:
     """Return how far [m] above the axis a left arc of ``radius`` and its clothoid end."""
-    return start.y + radius * math.cos(start.heading) - bend_of(radius, swing_way(speed, radius, wheel)).rho
+    return start.y + radius * math.cos(start.heading) - bend_of(radius, swing_distance(speed, radius, wheel)).rho
 
 
 def line_in(start: Pose, bend: Bend, rest: float) -> Route:

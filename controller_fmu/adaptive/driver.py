@@ -57,7 +57,7 @@ class Driver(NamedTuple):
     moved: bool = False
     """He has set out on the way prompted."""
     stop_speed: float = 0.0
-    stop_way: float = 0.0
+    stop_distance: float = 0.0
     """Driven since the prompt to stop [m]."""
     foreseen: float = 0.0
     """The way of this stop [m] as it was foreseen."""
@@ -72,7 +72,7 @@ class Driver(NamedTuple):
 def update_prompt(driver: Driver, speed: float) -> Driver:
     """Return the driver told another thing than before, at ``speed`` [m/s]."""
     return driver._replace(
-        asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_way=0.0, early_ns=0, late_ns=0, stood_ns=0
+        asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_distance=0.0, early_ns=0, late_ns=0, stood_ns=0
     )
 
 
@@ -82,7 +82,7 @@ def on_stop_prompt(driver: Driver, speed: float, advised: float, believed: Belie
     slows = driver.slows or (
         advised < SLOW_DOWN_SPEED_RATIO * driver.fastest and v <= NONCOMPLIANCE_SPEED_RATIO * advised
     )
-    foreseen = stopping_way(driver, believed)
+    foreseen = stopping_distance(driver, believed)
     return update_prompt(driver, speed)._replace(slows=slows and driver.obeys, foreseen=foreseen)
 
 
@@ -122,7 +122,7 @@ def update_while_stopping(driver: Driver, speed: float, standstill: float, dt_ns
         acceleration=_filter_acceleration(driver, v, dt_ns),
         fastest=max(driver.fastest, v),
         asked_ns=asked_ns,
-        stop_way=driver.stop_way + v * (dt_ns * 1e-9),
+        stop_distance=driver.stop_distance + v * (dt_ns * 1e-9),
         stood_ns=driver.stood_ns + dt_ns if v <= standstill else 0,
         early_ns=asked_ns
         if driver.early_ns == 0 and v < BRAKING_FIT_UPPER_FRACTION * driver.stop_speed
@@ -154,7 +154,7 @@ def update_at_standstill(driver: Driver, believed: BeliefParams) -> Driver:
         reaction = 0.5 * (known + clamp(reaction, known - 0.3, known + 0.3))
     stretch = driver.stretch
     if driver.stops > 0 and driver.foreseen > 0.0:
-        stretch = clamp(stretch * math.sqrt(driver.stop_way / driver.foreseen), 0.8, 1.5)
+        stretch = clamp(stretch * math.sqrt(driver.stop_distance / driver.foreseen), 0.8, 1.5)
     return still._replace(reaction=reaction, deceleration=deceleration, stops=driver.stops + 1, stretch=stretch)
 
 
@@ -168,7 +168,7 @@ def deceleration_of(driver: Driver, believed: BeliefParams) -> float:
     return driver.deceleration if driver.deceleration > 0.0 else believed.deceleration
 
 
-def stopping_way(driver: Driver, believed: BeliefParams) -> float:
+def stopping_distance(driver: Driver, believed: BeliefParams) -> float:
     """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does.
 
     Who drives faster than advised is taken to come back to the speed he settles at: he only swings.
@@ -181,7 +181,7 @@ def stopping_way(driver: Driver, believed: BeliefParams) -> float:
     return driver.stretch * way
 
 
-def shortest_way(driver: Driver, believed: BeliefParams) -> float:
+def shortest_drive(driver: Driver, believed: BeliefParams) -> float:
     """Return the shortest way [m] he can be had to drive: he is told to stop as soon as he has set out."""
     v = driver.cruise
     return driver.stretch * v * (reaction_of(driver, believed) + 0.5 * v / deceleration_of(driver, believed))

@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from controller_fmu.common.phases import CommonPhase, Expected
+from controller_fmu.common.phases import CommonPhase, PhaseExpectation
 
 
 class AdaptivePhase(IntEnum):
@@ -29,7 +29,7 @@ def direction_of(phase: int) -> int:
     return 1 if phase == AdaptivePhase.TO_Q4 else -1 if phase == AdaptivePhase.PATH_TRACKING else 0
 
 
-def motion_expectation(phase: int) -> Expected:
+def motion_expectation(phase: int) -> PhaseExpectation:
     """Return what is expected of driver and car in a phase."""
     steering = phase in (AdaptivePhase.PRE_STEER, AdaptivePhase.STRAIGHTEN)
-    return Expected(phase != AdaptivePhase.STANDBY, direction_of(phase), steering)
+    return PhaseExpectation(phase != AdaptivePhase.STANDBY, direction_of(phase), steering)

@@ -16,7 +16,7 @@ from controller_fmu.adaptive.curves import (
     line_in,
     s_curve,
     straight,
-    swing_way,
+    swing_distance,
 )
 from controller_fmu.adaptive.room import Room, room_along, room_at
 from controller_fmu.adaptive.route import Route, drivable, mirror_route, point_at
@@ -168,14 +168,14 @@ def _smooth(pose: Pose, speed: float, lead: float, demand: Demand, wheel: Steeri
                 return found
         for share in RADII:
             radius = share * wheel.radius
-            bend = bend_of(radius, swing_way(speed, radius, wheel))
+            bend = bend_of(radius, swing_distance(speed, radius, wheel))
             if lead == 0.0:
                 found = mirror_route(line_in(start, bend, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found
             for other in RADII:
                 radius2 = other * wheel.radius
-                bend2 = bend_of(radius2, swing_way(speed, radius2, wheel))
+                bend2 = bend_of(radius2, swing_distance(speed, radius2, wheel))
                 found = mirror_route(s_curve(start, lead, bend, bend2, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found

@@ -10,8 +10,8 @@ from controller_fmu.adaptive.driver import (
     has_stopped,
     on_stop_prompt,
     reaction_of,
-    shortest_way,
-    stopping_way,
+    shortest_drive,
+    stopping_distance,
     update_at_standstill,
     update_prompt,
     update_while_driving,
@@ -147,7 +147,7 @@ def _replan_at_standstill(state: AdaptiveState, pose: Pose, params: AdaptiveSyst
     speed = (
         STOPPING_DISTANCE_FACTOR * 0.5 * (driver.cruise + driver.fastest) + RESERVE_SPEED if known else UNKNOWN_SPEED
     )
-    shortest = 0.05 if driver.slows else shortest_way(driver, params.adaptive.belief)
+    shortest = 0.05 if driver.slows else shortest_drive(driver, params.adaptive.belief)
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
     planned = plan(pose, demand, wheel, room_of(params.car, params.adaptive.room))
@@ -205,7 +205,7 @@ def _guards(
         state.foot.heading_error
     ) > limit.leave_heading + abs(begun.heading_error)
     left = state.end - state.foot.way
-    must = off or left <= stopping_way(state.driver, params.adaptive.belief)
+    must = off or left <= stopping_distance(state.driver, params.adaptive.belief)
     return (
         bit(Guard.TAKEOVER, inputs.driver_takeover)
         | bit(Guard.FAULT, reason != Reason.NONE)

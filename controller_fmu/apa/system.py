@@ -37,7 +37,7 @@ from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reaso
 from controller_fmu.common.chart import bit
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import Listened, update_sample
+from controller_fmu.common.sensors import RangeSample, update_sample
 from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
@@ -59,7 +59,7 @@ class ApaState(NamedTuple):
     reason: int = Reason.NONE
     taken_over: bool = False
     clock_ns: int = 0
-    listened: Listened = Listened()
+    listened: RangeSample = RangeSample()
     """What the sensors told last."""
     search: SearchState = SearchState()
     around: Around = Around()

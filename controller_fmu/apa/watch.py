@@ -8,7 +8,7 @@ from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import ApaSystemParams, Longitudinal
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved
-from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Gear, Pose
@@ -38,7 +38,7 @@ class Watch(NamedTuple):
     frozen: int = 0
     running: int = 0
     """Since the driver confirmed."""
-    wheel: SteeringWatch = SteeringWatch()
+    wheel: SteeringMonitorState = SteeringMonitorState()
     pose: Pose = Pose()
 
 
@@ -89,7 +89,7 @@ def is_taken_over(state: Watch, inputs: ApaInput, params: ApaSystemParams) -> bo
     return inputs.driver_takeover or pedal or (settled and out_of_gear) or wheel
 
 
-def _is_off(wheel: SteeringWatch) -> bool:
+def _is_off(wheel: SteeringMonitorState) -> bool:
     return abs(wheel.request - wheel.angle) > PULLED
 
 

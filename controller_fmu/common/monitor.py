@@ -7,8 +7,8 @@ when it does not. The steering has a monitor of its own, ``controller_fmu.common
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.phases import Expected
-from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.phases import PhaseExpectation
+from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Monitored, Reason, Sensed, SensedWithFault
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
@@ -19,7 +19,7 @@ SLOWEST_SEEN = 0.1
 """A pose counted in ticks may rightly stand still for half a second at less than this [m/s]."""
 
 
-PACE = 0.3
+SLOW_DRIVING_SPEED = 0.3
 """A car slower than this [m/s] is given more time."""
 
 
@@ -28,9 +28,9 @@ class MonitorState(NamedTuple):
 
     waiting: int = 0
     stopping: int = 0
-    wrong_way: int = 0
+    wrong_direction_ns: int = 0
     frozen: int = 0
-    wheel: SteeringWatch = SteeringWatch()
+    wheel: SteeringMonitorState = SteeringMonitorState()
     pose: Pose = Pose()
     """Pose at the last sample."""
 
@@ -49,7 +49,7 @@ class Command(NamedTuple):
 def watch(
     state: MonitorState,
     inputs: Sensed,
-    expected: Expected,
+    expected: PhaseExpectation,
     request: float,
     dt_ns: int,
     params: Monitored,
@@ -66,7 +66,7 @@ def watch(
     return MonitorState(
         waiting=state.waiting + dt_ns if still and (direction != 0 or expected.steering) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
-        wrong_way=state.wrong_way + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
+        wrong_direction_ns=state.wrong_direction_ns + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
         wheel=wheel,
         pose=inputs.odometry,
@@ -76,11 +76,11 @@ def watch(
 def time_counted(dt_ns: int, speed: float, standstill: float, begun: bool = True) -> int:
     """Return what of a sample counts against the longest duration [ns]: a car that creeps is counted by its way.
 
-    So a slow driver, whose car always gets on, has as far to go as one at ``PACE``. In standby (``begun`` false) no
+    So a slow driver whose car moves has as far to go as one at ``SLOW_DRIVING_SPEED``. In standby (``begun`` false) no
     way leads to the slot: a car that creeps instead of standing is waited for no longer than one that stands.
     """
-    if begun and standstill < abs(speed) < PACE:
-        return math.floor(dt_ns * abs(speed) / PACE)
+    if begun and standstill < abs(speed) < SLOW_DRIVING_SPEED:
+        return math.floor(dt_ns * abs(speed) / SLOW_DRIVING_SPEED)
     return dt_ns
 
 
@@ -105,7 +105,7 @@ def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
 def reason_to_fail(
     state: MonitorState,
     inputs: SensedWithFault,
-    expected: Expected,
+    expected: PhaseExpectation,
     running_ns: int,
     manoeuvres: int,
     params: Monitored,
@@ -120,7 +120,7 @@ def reason_to_fail(
         return Reason.POSE_FROZEN
     if has_failed(state.wheel, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
-    if state.wrong_way * 1e-9 > limit.wrong_direction:
+    if state.wrong_direction_ns * 1e-9 > limit.wrong_direction:
         return Reason.WRONG_DIRECTION
     if state.stopping * 1e-9 > limit.stopping:
         return Reason.NOT_STOPPING

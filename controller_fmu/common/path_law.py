@@ -20,20 +20,20 @@ from modelkit.vocabulary import Pose
 MAX_TRACKING_HEADING = 1.3
 
 
-class Deviation(NamedTuple):
+class TrackingError(NamedTuple):
     """Tracking error at a point of the path: left [m], turned left [rad], at most ``MAX_TRACKING_HEADING``."""
 
     lateral: float
     heading: float
 
 
-def deviation(pose: Pose, at: Pose) -> Deviation:
+def deviation(pose: Pose, at: Pose) -> TrackingError:
     """Return how far ``pose`` is off the path's point ``at``."""
     e = (pose.y - at.y) * math.cos(at.heading) - (pose.x - at.x) * math.sin(at.heading)
-    return Deviation(e, clamp(wrap_angle(pose.heading - at.heading), -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING))
+    return TrackingError(e, clamp(wrap_angle(pose.heading - at.heading), -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING))
 
 
-def angle_back(off: Deviation, curvature: float, direction: float, k1: float, k2: float, wheelbase: float) -> float:
+def angle_back(off: TrackingError, curvature: float, direction: float, k1: float, k2: float, wheelbase: float) -> float:
     """Return the front-wheel angle [rad] that leads back to a path of ``curvature`` [1/m]."""
     c = math.cos(off.heading)
     return math.atan(wheelbase * c * c * c * (curvature - k1 * off.lateral - direction * k2 * math.tan(off.heading)))

@@ -21,7 +21,7 @@ class CommonPhase(IntEnum):
     """The driver has taken over."""
 
 
-class Expected(NamedTuple):
+class PhaseExpectation(NamedTuple):
     """What is expected of driver and car in a phase."""
 
     begun: bool = True

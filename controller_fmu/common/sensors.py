@@ -15,12 +15,12 @@ VALID_RANGE_FRACTION = 0.99
 """A reading of more than this share of the range tells nothing."""
 
 
-def is_told_anew(clock_ns: int, dt_ns: int, cycle: float) -> bool:
+def is_new_sample(clock_ns: int, dt_ns: int, cycle: float) -> bool:
     """Return whether sensors that measure every ``cycle`` [s] tell something new in a sample of ``dt_ns``."""
     return clock_ns % math.floor(cycle * 1e9 + 0.5) < dt_ns
 
 
-class Listened(NamedTuple):
+class RangeSample(NamedTuple):
     """What sensors told last, and whether they tell something new now."""
 
     readings: tuple[float, ...] = (0.0,) * 12
@@ -30,13 +30,15 @@ class Listened(NamedTuple):
     fresh: bool = False
 
 
-def update_sample(before: Listened, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float) -> Listened:
+def update_sample(
+    before: RangeSample, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float
+) -> RangeSample:
     """Return what is heard in a sample of ``dt_ns``: new readings may come later than they are measured.
 
     Where data is exchanged seldom, a sample arrives up to ``MAX_SAMPLE_LATENCY`` [s] after its ``cycle`` [s]: until
     then the readings are the last ones still. Readings that are the same after that are new ones too.
     """
-    due = is_told_anew(clock_ns, dt_ns, cycle)
+    due = is_new_sample(clock_ns, dt_ns, cycle)
     if not due and before.waited_ns == 0:
         return before._replace(fresh=False)
     waited = before.waited_ns + dt_ns
@@ -45,7 +47,7 @@ def update_sample(before: Listened, readings: tuple[float, ...], clock_ns: int, 
         changed = changed or readings[number] != before.readings[number]
     if not changed and waited * 1e-9 <= MAX_SAMPLE_LATENCY:
         return before._replace(waited_ns=waited, fresh=False)
-    return Listened(readings, 0, True)
+    return RangeSample(readings, 0, True)
 
 
 def sensor_at(mount: SensorMount, pose: Pose) -> Pose:

@@ -63,7 +63,7 @@ class Stretch(NamedTuple):
     """Of the window before [rad/s]."""
 
 
-class SteeringWatch(NamedTuple):
+class SteeringMonitorState(NamedTuple):
     """What the monitor remembers."""
 
     steering: Steering = Steering()
@@ -85,15 +85,15 @@ class SteeringWatch(NamedTuple):
     window: Stretch = Stretch()
 
 
-def at_rest(angle: float, steering: Steering) -> SteeringWatch:
+def at_rest(angle: float, steering: Steering) -> SteeringMonitorState:
     """Return the watch over a wheel at ``angle`` [rad] that nothing is asked of."""
     window = Stretch(angle=angle, request=angle)
-    return SteeringWatch(steering=steering, anchor=angle, angle=angle, request=angle, late=angle, window=window)
+    return SteeringMonitorState(steering=steering, anchor=angle, angle=angle, request=angle, late=angle, window=window)
 
 
 def watch_steering(
-    state: SteeringWatch, request: float, angle: float, tolerance: float, believed_rate: float, dt_ns: int
-) -> SteeringWatch:
+    state: SteeringMonitorState, request: float, angle: float, tolerance: float, believed_rate: float, dt_ns: int
+) -> SteeringMonitorState:
     """Return the watch after ``request`` [rad] held for ``dt_ns`` and brought the wheel to ``angle`` [rad]."""
     dt = dt_ns * 1e-9
     moved = angle - state.angle
@@ -112,7 +112,7 @@ def watch_steering(
     kept_up = side == 0.0 and abs(angle - state.window.angle) > MIN_MOVEMENT
     seen = state.steering.seen or nearer or kept_up
     window, rate, lag = _window(state, request, angle, believed_rate, dt_ns)
-    return SteeringWatch(
+    return SteeringMonitorState(
         steering=Steering(rate, dead_time, lag, seen),
         off_ns=0 if follows else state.off_ns + dt_ns,
         away_ns=0 if follows else state.away_ns + dt_ns if away else state.away_ns,
@@ -126,7 +126,7 @@ def watch_steering(
     )
 
 
-def has_failed(state: SteeringWatch, longest: float) -> bool:
+def has_failed(state: SteeringMonitorState, longest: float) -> bool:
     """Return whether the wheel has stood or gone away for ``longest`` [s], longer only if its dead time is long."""
     late = state.steering.dead_time - USUAL_DEAD_TIME
     allowed = longest + 2.0 * late if late > 0.0 else longest
@@ -144,7 +144,9 @@ def delay_of(steering: Steering) -> float:
     return steering.dead_time + steering.lag
 
 
-def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: float, dt_ns: int) -> tuple[int, float]:
+def _dead_time(
+    state: SteeringMonitorState, request: float, angle: float, tolerance: float, dt_ns: int
+) -> tuple[int, float]:
     """Return the time since the request jumped [ns], -1 if none runs, and the dead time [s]."""
     known = state.steering.dead_time
     if state.asked_ns < 0:
@@ -160,7 +162,7 @@ def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: fl
 
 
 def _window(
-    state: SteeringWatch, request: float, angle: float, believed_rate: float, dt_ns: int
+    state: SteeringMonitorState, request: float, angle: float, believed_rate: float, dt_ns: int
 ) -> tuple[Stretch, float, float]:
     """Return the window being measured, the rate [rad/s] and the lag [s] as known after it."""
     window = state.window

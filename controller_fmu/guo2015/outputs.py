@@ -9,7 +9,7 @@ from controller_fmu.guo2015.params import GuoSystemParams
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import Plan
 from controller_fmu.guo2015.prompts import prompt_of
-from controller_fmu.guo2015.signals import KNOTS, NO_POINTS, GuoOutput, GuoSignals, PlannedPoint
+from controller_fmu.guo2015.signals import NO_POINTS, PLANNED_POINT_COUNT, GuoOutput, GuoSignals, PlannedPoint
 from controller_fmu.guo2015.smooth_path import PathShape, on_curve
 from controller_fmu.guo2015.system import GuoState
 from controller_fmu.interface import Path, Segment
@@ -63,8 +63,8 @@ def guo_signals(planned: Plan, params: GuoSystemParams) -> GuoSignals:
     gains = params.guo2015
     points = NO_POINTS
     if path.curve.shape != PathShape.TWO_ARCS:
-        for number in range(KNOTS):
-            x = path.start.x * (1.0 - number / (KNOTS - 1.0))
+        for number in range(PLANNED_POINT_COUNT):
+            x = path.start.x * (1.0 - number / (PLANNED_POINT_COUNT - 1.0))
             at = to_world(Pose(x, on_curve(path.curve, x).y, 0.0), frame)
             points = points[1:] + (PlannedPoint(at.x, at.y),)
     return GuoSignals(

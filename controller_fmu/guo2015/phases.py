@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from controller_fmu.common.phases import CommonPhase, Expected
+from controller_fmu.common.phases import CommonPhase, PhaseExpectation
 
 
 class GuoPhase(IntEnum):
@@ -34,7 +34,7 @@ DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
 """Direction that each GuoPhase drives in, in its order."""
 
 
-def motion_expectation(phase: int) -> Expected:
+def motion_expectation(phase: int) -> PhaseExpectation:
     """Return what is expected of driver and car in a phase."""
     steering = phase in (GuoPhase.PRE_STEER, GuoPhase.STRAIGHTEN)
-    return Expected(phase != GuoPhase.STANDBY, DIRECTION_OF_PHASE[phase], steering)
+    return PhaseExpectation(phase != GuoPhase.STANDBY, DIRECTION_OF_PHASE[phase], steering)

@@ -27,7 +27,7 @@ from modelkit.vocabulary import (
     SteeringWheelRequest,
 )
 
-KNOTS = 17
+PLANNED_POINT_COUNT = 17
 
 
 class PlannedPoint(NamedTuple):
@@ -37,7 +37,7 @@ class PlannedPoint(NamedTuple):
     y: Annotated[float, Signal("m", "y in the world")] = 0.0
 
 
-NO_POINTS = (PlannedPoint(),) * KNOTS
+NO_POINTS = (PlannedPoint(),) * PLANNED_POINT_COUNT
 
 
 class GuoSignals(NamedTuple):

@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from controller_fmu.common.phases import CommonPhase, Expected
+from controller_fmu.common.phases import CommonPhase, PhaseExpectation
 
 
 class HsicPhase(IntEnum):
@@ -20,8 +20,8 @@ class HsicPhase(IntEnum):
     TAKEOVER = CommonPhase.TAKEOVER
 
 
-def motion_expectation(phase: int, direction: int) -> Expected:
+def motion_expectation(phase: int, direction: int) -> PhaseExpectation:
     """Return what is expected of driver and car in a phase; ``direction`` is that driven last, 1 forward."""
     driven = (1 if direction > 0 else -1) if phase == HsicPhase.PATH_TRACKING else 0
     steering = phase in (HsicPhase.PRE_STEER, HsicPhase.STRAIGHTEN)
-    return Expected(phase != HsicPhase.STANDBY, driven, steering)
+    return PhaseExpectation(phase != HsicPhase.STANDBY, driven, steering)

@@ -7,7 +7,7 @@ from controller_fmu.parking.model import ParkingModelState, parking_initialize, 
 from controller_fmu.parking.params import ParkingParams, ParkingSystem
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
-from modelkit.model import Chart, Model, View
+from modelkit.model import Chart, Model, Variant
 from modelkit.terminals import TERMINALS
 
 MODEL = Model(
@@ -24,7 +24,7 @@ MODEL = Model(
     stop_time=5.0,
     terminals=TERMINALS,
     sampled=True,
-    view=View((("system", int(ParkingSystem.PARKING)),), frozenset({"system"})),
+    view=Variant((("system", int(ParkingSystem.PARKING)),), frozenset({"system"})),
     store=PlanningWork,
     charts=(Chart("parking.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
 )

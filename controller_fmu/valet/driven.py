@@ -2,8 +2,8 @@
 
 import math
 
-from controller_fmu.common.path_law import Deviation, angle_back, deviation
-from controller_fmu.common.sensors import is_told_anew
+from controller_fmu.common.path_law import TrackingError, angle_back, deviation
+from controller_fmu.common.sensors import is_new_sample
 from controller_fmu.planning.plan import (
     Path,
 )
@@ -54,7 +54,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: Val
     soon = left - abs(inputs.measured_speed) * law.wheel_delay
     aim = aim_at(state.path, state.piece, left, params)
     asked = aim_at(state.path, state.piece, soon, params).curvature
-    beside = Deviation(led_back(off.lateral - aim.lateral, asked, params), off.heading - aim.heading)
+    beside = TrackingError(led_back(off.lateral - aim.lateral, asked, params), off.heading - aim.heading)
     angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
     coming = ahead_of(state.path, state.piece, left, params)
     if turns_already(coming, params):
@@ -79,7 +79,7 @@ def led_back(lateral: float, curvature: float, params: ValetParams) -> float:
 
 def heard_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int) -> ValetState:
     """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
-    if not is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle):
+    if not is_new_sample(state.watch.running, dt_ns, params.car.ultrasonic.cycle):
         return state
     rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
     nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)

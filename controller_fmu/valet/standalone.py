@@ -7,7 +7,7 @@ from controller_fmu.valet import chart
 from controller_fmu.valet.model import ValetModelState, valet_initialize, valet_step
 from controller_fmu.valet.params import ValetParams, ValetSystem
 from controller_fmu.valet.signals import ValetInput, ValetOutput
-from modelkit.model import Chart, Model, View
+from modelkit.model import Chart, Model, Variant
 from modelkit.terminals import TERMINALS
 
 MODEL = Model(
@@ -24,7 +24,7 @@ MODEL = Model(
     stop_time=5.0,
     terminals=TERMINALS,
     sampled=True,
-    view=View((("system", int(ValetSystem.VALET)),), frozenset({"system"})),
+    view=Variant((("system", int(ValetSystem.VALET)),), frozenset({"system"})),
     store=PlanStore,
     charts=(Chart("valet.step", chart.Step, chart.Guard, chart.TRANSITIONS),),
 )

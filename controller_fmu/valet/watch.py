@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved, is_usable_input
-from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
@@ -21,7 +21,7 @@ class Watch(NamedTuple):
     blocked: int = 0
     """Something unknown is in the way of a standing car."""
     running: int = 0
-    wheel: SteeringWatch = SteeringWatch()
+    wheel: SteeringMonitorState = SteeringMonitorState()
     pose: Pose = Pose()
 
 

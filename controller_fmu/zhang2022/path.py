@@ -21,7 +21,7 @@ REFINEMENT_ROUNDS = 4
 """Each looks at radii four times as close to each other as the one before."""
 CURVATURE_SAMPLES = 32
 FOOT_STEPS = 5
-STEEP = 1e9
+CURVATURE_WITHOUT_PATH = 1e9
 """Curvature [1/m] said of what is no path y(x)."""
 MAX_PATH_HEADING = 1.2
 """Largest heading of a path given as y(x) [rad]."""
@@ -177,7 +177,7 @@ def through_joints(start: Pose, joints: Joints) -> QuinticPath:
     """Return the three quintics y(x) from ``start`` through both joints to the origin; no path if one is too short."""
     high = Knot(start.x, start.y, math.tan(start.heading), 0.0)
     if not 0.01 < joints.lower.x < joints.upper.x - 0.01 < high.x - 0.02:
-        return QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
+        return QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, CURVATURE_WITHOUT_PATH)
     first = quintic_between(joints.upper, high)
     line = quintic_between(joints.lower, joints.upper)
     last = quintic_between(Knot(0.0, 0.0, 0.0, 0.0), joints.lower)

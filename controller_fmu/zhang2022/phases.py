@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from controller_fmu.common.phases import CommonPhase, Expected
+from controller_fmu.common.phases import CommonPhase, PhaseExpectation
 
 
 class ZhangPhase(IntEnum):
@@ -18,7 +18,7 @@ class ZhangPhase(IntEnum):
     TAKEOVER = CommonPhase.TAKEOVER
 
 
-def expectation_of(phase: int) -> Expected:
+def expectation_of(phase: int) -> PhaseExpectation:
     """Return what is expected of driver and car in a phase."""
     direction = -1 if phase == ZhangPhase.PATH_TRACKING else 0
-    return Expected(phase != ZhangPhase.STANDBY, direction, phase == ZhangPhase.STRAIGHTEN)
+    return PhaseExpectation(phase != ZhangPhase.STANDBY, direction, phase == ZhangPhase.STRAIGHTEN)

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from controller_fmu.common.slot_clearance import is_pose_clear
 from controller_fmu.zhang2022.path import (
+    CURVATURE_WITHOUT_PATH,
     EMPTY,
-    STEEP,
     EndConditions,
     PathStatus,
     QuinticPath,
@@ -27,11 +27,11 @@ from controller_fmu.zhang2022.refinement import PathLimits, is_within, refine
 from controller_fmu.zhang2022.slot import is_path_clear
 from modelkit.vocabulary import Pose
 
-SPEEDS = 6
+END_SPEED_COUNT = 6
 """Speeds tried at start and target each."""
 LOWEST, SPEED_STEP = 0.25, 0.12
 """The lowest and the step, as shares of the distance over the final time: with more the wheel would have to swing."""
-ACCELERATIONS = 5
+END_ACCELERATION_COUNT = 5
 """Accelerations tried at both ends each, from none."""
 ACCELERATION_STEP = 3.0
 """In the same measure."""
@@ -83,12 +83,12 @@ def _choose_path(start: Pose, radius: float, limits: PathLimits) -> QuinticPath:
 def _over_time(start: Pose, limits: PathLimits) -> Searched:
     """Return the clear path of least curvature among quintics over time, within the curvature limit or not."""
     distance = math.sqrt(start.x * start.x + start.y * start.y)
-    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, STEEP)
+    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, CURVATURE_WITHOUT_PATH)
     blocked = False
-    for first in range(SPEEDS):
-        for last in range(SPEEDS):
-            for gaining in range(ACCELERATIONS):
-                for slowing in range(ACCELERATIONS):
+    for first in range(END_SPEED_COUNT):
+        for last in range(END_SPEED_COUNT):
+            for gaining in range(END_ACCELERATION_COUNT):
+                for slowing in range(END_ACCELERATION_COUNT):
                     ends = EndConditions(
                         (LOWEST + SPEED_STEP * first) * distance,
                         ACCELERATION_STEP * gaining * distance,

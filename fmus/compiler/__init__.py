@@ -3,11 +3,20 @@
     translation = translate(model)        # .name, .header, .source
     members(model)                        # where each flat variable is in the C structs
 
-What cannot be proved equal in C is refused (``Refused``) with its place and what to write instead.
+What cannot be proved equal in C is refused (``UnsupportedError``) with its place and what to write instead.
 """
 
-from fmus.compiler.source.diagnostics import Refusal, Refused
+from fmus.compiler.source.diagnostics import Diagnostic, UnsupportedError
 from fmus.compiler.target.members import Member, member_path, members
 from fmus.compiler.translation import Translation, live_inputs, translate
 
-__all__ = ["Member", "Refusal", "Refused", "Translation", "live_inputs", "member_path", "members", "translate"]
+__all__ = [
+    "Diagnostic",
+    "Member",
+    "Translation",
+    "UnsupportedError",
+    "live_inputs",
+    "member_path",
+    "members",
+    "translate",
+]

@@ -9,7 +9,7 @@ from fmus.compiler.constructs import arithmetic, calls, conditions, loops, state
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
 from fmus.compiler.slicing import Slice, SliceResult, fields_along, slice_program
-from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError, Refusal, Refused
+from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError, Diagnostic, UnsupportedError
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.types import NoKindError, Struct, is_named_tuple, translating
 from fmus.compiler.target.program import Program
@@ -29,13 +29,13 @@ class Translation(NamedTuple):
 
 
 def translate(model: Model, live: Slice | None = None) -> Translation:
-    """Return the C99 of ``model``, or of the slice ``live`` of it; ``Refused`` says all that stands in the way."""
+    """Return the C99 of ``model``, or of the slice ``live`` of it; raises ``UnsupportedError`` with all reasons."""
     with _types_of(model):
         return _translate(model, _interface(model), live)
 
 
 def live_inputs(model: Model, live: Slice) -> frozenset[str]:
-    """Return the names of the inputs that the slice ``live`` of ``model`` reads; ``Refused`` as :func:`translate`."""
+    """Return the names of the inputs that the slice ``live`` of ``model`` reads; errors as :func:`translate`."""
     with _types_of(model):
         fields = _slice(model, _interface(model), live).live_fields
         names = (item.name for item in variables(model.inputs))
@@ -80,7 +80,7 @@ def _translate(model: Model, interfaces: list[Any], live: Slice | None) -> Trans
     except AlreadySaidError:
         pass
     if program.refusals:
-        raise Refused(program.refusals)
+        raise UnsupportedError(program.refusals)
     files = Files(program, entries, model)
     return Translation(model.name, files.header(), files.source(functions))
 
@@ -97,7 +97,7 @@ def _roots(model: Model) -> list[Any]:
     try:
         return roots(model)
     except CannotError as error:
-        raise Refused([Refusal(model.name, 1, error.what, error.advice)]) from None
+        raise UnsupportedError([Diagnostic(model.name, 1, error.what, error.advice)]) from None
 
 
 def _interface(model: Model) -> list[Any]:
@@ -105,10 +105,10 @@ def _interface(model: Model) -> list[Any]:
     found = {"state": model.state, "params": model.params, "inputs": model.inputs, "outputs": model.outputs}
     found |= {} if model.store is None else {"store": model.store}
     wrong = [
-        Refusal(model.name, 1, f"{group} of the model is {cls!r}", "give it a NamedTuple")
+        Diagnostic(model.name, 1, f"{group} of the model is {cls!r}", "give it a NamedTuple")
         for group, cls in found.items()
         if not is_named_tuple(cls)
     ]
     if wrong:
-        raise Refused(wrong)
+        raise UnsupportedError(wrong)
     return list(found.values())

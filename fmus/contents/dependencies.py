@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import modelkit
-from fmus.cache_paths import CACHE
+from fmus.cache_paths import CACHE_FOLDER
 from fmus.contents.archive import content_hash
 from fmus.locks import cache_file
 from modelkit.model import Model
@@ -63,7 +63,7 @@ def initial_dependencies(model: Model) -> Found:
     model = model.with_start_values({})
     key = _hash(model)[:32]
     path = cache_file(
-        CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), CACHED_RESULTS
+        CACHE_FOLDER, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), CACHED_RESULTS
     )
     found: Found = json.loads(path.read_bytes())
     return found

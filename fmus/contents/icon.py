@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 ICON_PIXELS = 96
-SUBPIXELS = 2
+SAMPLES_PER_PIXEL = 2
 CLEAR = (255.0, 255.0, 255.0, 0.0)
 EDGE = (60.0, 64.0, 72.0, 255.0)
 PAPER = (250.0, 250.0, 248.0, 255.0)
@@ -38,20 +38,22 @@ def _chunk(kind: bytes, content: bytes) -> bytes:
 def _average(points: Array) -> NDArray[np.uint8]:
     """Return the mean colour of each pixel, shape (SIZE, SIZE, 4), from its SAMPLES by SAMPLES points."""
     cells = (
-        points.reshape(ICON_PIXELS, SUBPIXELS, ICON_PIXELS, SUBPIXELS, 4)
+        points.reshape(ICON_PIXELS, SAMPLES_PER_PIXEL, ICON_PIXELS, SAMPLES_PER_PIXEL, 4)
         .swapaxes(1, 2)
-        .reshape(ICON_PIXELS, ICON_PIXELS, SUBPIXELS * SUBPIXELS, 4)
+        .reshape(ICON_PIXELS, ICON_PIXELS, SAMPLES_PER_PIXEL * SAMPLES_PER_PIXEL, 4)
     )
     opacity = cells[..., 3:].sum(axis=2)
     mean = (cells[..., :3] * cells[..., 3:]).sum(axis=2) / np.maximum(opacity, 1.0)
     colour = np.where(opacity > 0.0, mean, CLEAR[:3])
-    pixels: NDArray[np.uint8] = np.rint(np.concatenate([colour, opacity / SUBPIXELS**2], axis=2)).astype(np.uint8)
+    pixels: NDArray[np.uint8] = np.rint(np.concatenate([colour, opacity / SAMPLES_PER_PIXEL**2], axis=2)).astype(
+        np.uint8
+    )
     return pixels
 
 
 def _points(ink: tuple[float, ...], inputs: int, outputs: int) -> Array:
     """Return the colour of each point, rows from the top, shape (SIZE * SAMPLES, SIZE * SAMPLES, 4)."""
-    places = (np.arange(ICON_PIXELS * SUBPIXELS) + 0.5) / (ICON_PIXELS * SUBPIXELS)
+    places = (np.arange(ICON_PIXELS * SAMPLES_PER_PIXEL) + 0.5) / (ICON_PIXELS * SAMPLES_PER_PIXEL)
     x, y = np.meshgrid(places, places)
     across, down = np.abs(x - 0.5) - 0.29, np.abs(y - 0.5) - 0.34
     distance = np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)) + np.minimum(np.maximum(across, down), 0.0)

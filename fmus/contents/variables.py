@@ -30,7 +30,7 @@ class FmiVariable(NamedTuple):
     """Start value of a parameter or input; None for outputs and time, which are calculated."""
     signal: Signal
     is_exposed: bool = True
-    """False: it has place and start value, but the description does not name it (see ``modelkit.model.View``)."""
+    """False: it has place and start value, but the description does not name it (see ``modelkit.model.Variant``)."""
 
     @property
     def fmi_type(self) -> str:

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from fmus.cache_paths import CACHE, can_write
+from fmus.cache_paths import CACHE_FOLDER, can_write
 from fmus.children import PYTHON, run_child
 from fmus.files import folder_for_a_while
 from fmus.installation import install_command
@@ -36,7 +36,7 @@ FRAME_REPORT = "-Wframe-larger-than=127"
 FRAME = re.compile(r"\bframe size (?:of )?\(?(\d+)\)?")
 
 
-class Compiled(NamedTuple):
+class CompilerOutput(NamedTuple):
     """What a compiler made."""
 
     content: bytes
@@ -64,7 +64,7 @@ class Compiler(NamedTuple):
         """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`link`."""
         return self.link(files, [unit], name, target).content
 
-    def link(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> Compiled:
+    def link(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> CompilerOutput:
         """Return what the files ``units`` among ``files`` become together.
 
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
@@ -76,7 +76,7 @@ class Compiler(NamedTuple):
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
             text = self.run([*SHARED, FRAME_REPORT, "-o", name, *units, *self._options(target)], here, target)
-            return Compiled((here / name).read_bytes(), max(map(int, FRAME.findall(text)), default=0))
+            return CompilerOutput((here / name).read_bytes(), max(map(int, FRAME.findall(text)), default=0))
 
     def options_for_this_machine(self) -> tuple[str, ...]:
         """Return the options for a library that only this machine's processor needs to run; the bits are the same.
@@ -154,5 +154,5 @@ def _environment() -> dict[str, str]:
     if os.name == "posix" and "ZIG_GLOBAL_CACHE_DIR" not in found:
         home = found.get("XDG_CACHE_HOME") or found.get("HOME")
         if not home or not can_write(Path(home)):
-            found["ZIG_GLOBAL_CACHE_DIR"] = str(CACHE / "zig")
+            found["ZIG_GLOBAL_CACHE_DIR"] = str(CACHE_FOLDER / "zig")
     return found

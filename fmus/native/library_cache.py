@@ -1,13 +1,13 @@
 """Shared libraries for this machine and this process that no model is in: the compiled master, the batch.
 
-Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled once. Imports no compiler of models.
+Kept in ``LIBRARY_FOLDER`` under a hash of their sources, so each is compiled once. Imports no compiler of models.
 """
 
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from fmus.cache_paths import LIBRARIES
+from fmus.cache_paths import LIBRARY_FOLDER
 from fmus.locks import cache_file
 from fmus.native.compilers import Compiler, find_compiler
 from fmus.native.platforms import PLATFORMS, CompileTarget, host, host_target
@@ -41,7 +41,7 @@ def cache_library(
     compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
     target = target._replace(options=(*target.options, *options))
     key, file = key_of(compiler, target, files), f"{name}{platform.suffix}"
-    return cache_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
+    return cache_file(LIBRARY_FOLDER, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
 
 
 def key_of(compiler: Compiler, target: CompileTarget, files: Mapping[str, str]) -> str:

@@ -5,7 +5,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from fmus import compiler
-from fmus.cache_paths import CACHE
+from fmus.cache_paths import CACHE_FOLDER
 from fmus.compiler import Translation, translate
 from fmus.compiler.slicing import Slice
 from fmus.locks import cache_file
@@ -66,7 +66,7 @@ def translate_model(model: Model, live: Slice | None = None) -> Translation:
     key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
     name = model.name if live is None else f"{model.name}_slice"
     made = lambda: json.dumps(translate(model, live)._asdict()).encode()  # noqa: E731
-    path = cache_file(CACHE, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
+    path = cache_file(CACHE_FOLDER, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
     return Translation(**json.loads(path.read_bytes()))
 
 

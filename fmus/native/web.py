@@ -9,7 +9,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from fmus.cache_paths import CACHE, LIBRARIES
+from fmus.cache_paths import CACHE_FOLDER, LIBRARY_FOLDER
 from fmus.locks import cache_file
 from fmus.native.compilers import find_compiler
 from fmus.native.coverage_probes import DECLARED, instrument
@@ -75,8 +75,10 @@ def live_library(
         *(word for model in models.values() for word in words_of(model)),
     ]
     sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
-    of_c = cache_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), CACHED_MODULES)
-    return cache_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, make)
+    of_c = cache_file(
+        CACHE_FOLDER, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), CACHED_MODULES
+    )
+    return cache_file(LIBRARY_FOLDER, "live", of_c.read_text(encoding="ascii"), suffix, make)
 
 
 def live_files(models: Mapping[str, Model]) -> dict[str, str]:

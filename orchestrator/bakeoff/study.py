@@ -13,14 +13,14 @@ from rich.table import Table as Printed
 from orchestrator.bakeoff.drives import EXACT, REFUSED, Drive, drives, exact_limits
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, entries
 from orchestrator.bakeoff.figure import draw
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
-from orchestrator.sweep.study.study import Columns, Derived, Study
+from orchestrator.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.numbers import Metric
 from orchestrator.verdict.outcome import BEYOND
 
 CONTENT = {
@@ -48,8 +48,8 @@ MEDIANS: tuple[Callable[[Drive], float], ...] = (
     lambda item: item.clearance,
     lambda item: item.effort / (2.0 * math.pi),
 )
-TIME = Derived(
-    {"time": Number("s", "from the start (assist: from confirmation) until the vehicle is parked")},
+TIME = DerivedParameter(
+    {"time": Metric("s", "from the start (assist: from confirmation) until the vehicle is parked")},
     lambda columns: {"time": _times(columns)},
 )
 

@@ -9,7 +9,7 @@ from orchestrator.catalogue.entries import STEP_TESTS, select_standards
 from orchestrator.catalogue.show import count_text, verdict_tables, write_catalogue
 from orchestrator.catalogue.verdicts import MISSED, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.suite.junit import write_junit
-from orchestrator.suite.suite import Bench, SuiteResult, provenance_of, run_tests
+from orchestrator.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests
 from orchestrator.text.console import console
 from orchestrator.text.errors import NOT_PARKED, PARKED
 
@@ -32,7 +32,7 @@ class Catalogue:
         """Return how many runs there are."""
         return len(self._scenarios) + len(self._tests)
 
-    def run(self, sets: list[str], bench: Bench, out: Path, jobs: int, on_run: Callable[[int], None]) -> None:
+    def run(self, sets: list[str], bench: SuiteConfig, out: Path, jobs: int, on_run: Callable[[int], None]) -> None:
         """Run all; what a run recorded is let go once it is judged. ``on_run`` is told how many are done."""
         steps = bench._replace(requirements=[])
         for tests in (run_tests(self._scenarios, sets, bench, out, jobs), run_tests(self._tests, [], steps, out)):
@@ -73,7 +73,7 @@ class Catalogue:
         return worst or (NOT_PARKED if counts(self.verdicts)[MISSED] else PARKED)
 
 
-def judge_standards(words: list[str], bench: Bench, out: Path) -> list[ClauseVerdict]:
+def judge_standards(words: list[str], bench: SuiteConfig, out: Path) -> list[ClauseVerdict]:
     """Return the verdicts on the standards that ``words`` mean, with their runs in ``out``."""
     catalogue = Catalogue(words)
     catalogue.run([], bench, out, 1, lambda done: None)

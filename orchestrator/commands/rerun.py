@@ -8,7 +8,7 @@ import numpy as np
 from orchestrator.commands.run.once import execute
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
+from orchestrator.session.foreign import FOREIGN, ImportedFmus, sha256_of
 from orchestrator.session.options import add_output_arguments
 from orchestrator.session.trust import require_trust
 from orchestrator.text.console import console, say
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out or log.parent.with_name(f"{log.parent.resolve().name}-rerun")
     for name in changed:
         say(f"apa: warning: the FMU of {name} has changed since")
-    done = execute(arguments, scenario, Foreign(files), out)
+    done = execute(arguments, scenario, ImportedFmus(files), out)
     different = differing_signals(first, done.recording)
     if not arguments.json:
         text = f"differs from the log in {', '.join(different[:8])}" if different else "identical to the log"

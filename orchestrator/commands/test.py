@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any
 
 from orchestrator.catalogue.entries import is_catalogue
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.kinds import KINDS, default_kind
-from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.models import MODELS, apart_models
@@ -25,7 +25,7 @@ from orchestrator.session.options import add_foreign_arguments
 from orchestrator.session.provenance import start_record
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
-from orchestrator.suite.suite import Bench, SuiteResult, provenance_of, run_tests, select_scenarios
+from orchestrator.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests, select_scenarios
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.text.owned import lock_folder
@@ -208,12 +208,12 @@ class Verdicts:
         write_collection(self._index, self.tested, about)
 
 
-def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
+def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> SuiteConfig:
     foreign = foreign_of(arguments)
     files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
     found = [find_file(name, "requirements", "set of requirements", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
-    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=start_record())
+    return SuiteConfig(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=start_record())
 
 
 def _print(tested: SuiteResult, place: str) -> None:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.comparison.tube import Trace
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 
 SPAN_ROWS = 1 << 18
 """Exchanges of a span, without those that the time tolerance adds."""

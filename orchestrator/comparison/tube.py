@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.comparison.tolerance import Tolerance
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 
 class Trace(NamedTuple):

@@ -1,1 +1,1 @@
-"""Slaves stepped together: the master, its slaves, faults, endings, and the recording of a run."""
+"""The co-simulation algorithm, its FMU instances, faults, stop conditions, and the recording of a run."""

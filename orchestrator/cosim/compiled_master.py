@@ -1,7 +1,7 @@
 """The Python master's exchange as compiled calls: FMUs driven through their C functions, without the GIL.
 
 ``fmus/native/c/master.c`` does a block of exchanges at a time and writes all signals of each into rows
-allocated once. Afterwards the rows are laid into the slaves' arrays one by one, and the observers
+allocated once. Afterwards the rows are laid into the instances' arrays one by one, and the observers
 and endings see them as if they had been there: log, recording and progress bar need to know nothing.
 An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
 
@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 from fmus.native.structures import Long, Pointer, structure
+from orchestrator.cosim.algorithm import CoSimulation, Termination, last_exchange
 from orchestrator.cosim.connections import Connection
-from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
-from orchestrator.cosim.master import End, Master, last_exchange
-from orchestrator.cosim.slave import Indices, all_values, places_of
+from orchestrator.cosim.fmu_instance import Indices, all_values, places_of
+from orchestrator.cosim.local_instance import LocalInstance, Transfer
 
 EXCHANGES_PER_CALL = 250
 """Exchanges per compiled call."""
@@ -29,8 +29,8 @@ FETCH, SEND, STEP = 1, 2, 3
 TransferC = structure(
     "TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long, changed=Long
 )
-SlaveC = structure(
-    "SlaveC",
+InstanceC = structure(
+    "InstanceC",
     component=Pointer,
     do_step=Pointer,
     begin=Long,
@@ -51,10 +51,10 @@ SlaveC = structure(
 LinkC = structure("LinkC", target=Pointer, set=Pointer, source_places=Pointer, target_places=Pointer, count=Long)
 RunC = structure(
     "RunC",
-    slaves=Pointer,
+    instances=Pointer,
     links=Pointer,
     before=Pointer,
-    slave_count=Long,
+    instance_count=Long,
     link_count=Long,
     width=Long,
     step_ns=Long,
@@ -66,7 +66,7 @@ RunC = structure(
 )
 
 
-class CompiledMaster(Master):
+class CompiledMaster(CoSimulation):
     """A master whose loop is compiled wherever it can be."""
 
     _plan: "_Plan | None" = None
@@ -74,22 +74,22 @@ class CompiledMaster(Master):
     def initialize(self) -> None:
         """Enter initialization, exchange once, leave it, and lay out the loop's memory: time is zero."""
         super().initialize()
-        fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
+        fmus = [instance for instance in self.instances if isinstance(instance, LocalInstance)]
         self._plan = None
         plain = all(link.convert is None for link in self.connections) and all(
-            len(slave.inputs.names) == slave.inputs.own for slave in self.slaves
+            len(instance.inputs.names) == instance.inputs.own for instance in self.instances
         )
-        if not self.manipulators and plain and len(fmus) == len(self.slaves):
+        if not self.manipulators and plain and len(fmus) == len(self.instances):
             with suppress(RuntimeError):
                 self._plan = _Plan(self, fmus)
 
-    def run(self) -> End:
+    def run(self) -> Termination:
         """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
         if self._plan is None:
             return super().run()
         return self._run_blocks(self._plan)
 
-    def _run_blocks(self, plan: "_Plan") -> End:
+    def _run_blocks(self, plan: "_Plan") -> Termination:
         first = 0
         while True:
             count = plan.advance(first)
@@ -102,7 +102,7 @@ class CompiledMaster(Master):
                     observer.on_communication_point(t_ns)
                 reason = self._over(t_ns, first + row == plan.last)
                 if reason:
-                    return End(reason, t_ns)
+                    return Termination(reason, t_ns)
             first += count
             plan.check(first)
 
@@ -110,11 +110,11 @@ class CompiledMaster(Master):
 class _Plan:
     """The C structures of one run, and all memory they point to.
 
-    A row of the compiled loop has the values of each slave's inputs, then of its outputs, in the order of the
+    A row of the compiled loop has the values of each instance's inputs, then of its outputs, in the order of the
     transfers, so that those of one type lie together and an FMU reads and writes them in place.
     """
 
-    def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
+    def __init__(self, master: CoSimulation, fmus: list[LocalInstance]) -> None:
         from fmus.native.library_cache import master_library
 
         self._call = ctypes.CDLL(str(master_library())).master_run
@@ -125,18 +125,18 @@ class _Plan:
         self._step_ns = master.step_ns
         self.last = last_exchange(master.step_ns, master.stop_ns)
         self._begins = [part.start for part in places_of(fmus)]
-        groups = [group for slave in fmus for group in (slave.sets, slave.gets)]
+        groups = [group for instance in fmus for group in (instance.sets, instance.gets)]
         order = np.concatenate([begin + _order(group) for begin, group in zip(self._begins, groups, strict=True)])
         self._columns = np.argsort(order)
         """Place of a value in all ports -> its place in a row."""
         before = all_values(fmus)[order]
         self.rows = np.full((EXCHANGES_PER_CALL, len(before)), np.nan)
         self._transfers = [_Transfers(group, begin) for group, begin in zip(groups, self._begins, strict=True)]
-        self._slaves = (SlaveC * len(fmus))(*[self._slave(number, master) for number in range(len(fmus))])
+        self._instances = (InstanceC * len(fmus))(*[self._instance(number, master) for number in range(len(fmus))])
         parts = [(link, number) for link in master.connections for number in range(len(fmus[link.target].sets))]
         links = (LinkC * len(parts))(*[self._link(link, number) for link, number in parts])
         self._kept += [before, links]
-        pointers = (ctypes.addressof(self._slaves), ctypes.addressof(links), before.ctypes.data)
+        pointers = (ctypes.addressof(self._instances), ctypes.addressof(links), before.ctypes.data)
         self._run = RunC(*pointers, len(fmus), len(links), len(before), master.step_ns, master.stop_ns, self.last)
         self._addresses = ctypes.addressof(self._run), self.rows.ctypes.data
 
@@ -150,25 +150,25 @@ class _Plan:
         return int(self._call(run, first, EXCHANGES_PER_CALL, rows))
 
     def check(self, number: int) -> None:
-        """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
-        slave, status = self._fmus[self._run.failed], self._run.status
+        """Raise the ``RunError`` of the instance that refused in the block just done; ``number`` rows are complete."""
+        instance, status = self._fmus[self._run.failed], self._run.status
         if self._run.failure == FETCH:
-            raise slave.no_outputs(status)
+            raise instance.no_outputs(status)
         if self._run.failure == SEND:
-            raise slave.no_inputs(status)
+            raise instance.no_inputs(status)
         if self._run.failure == STEP:
-            raise slave.no_step((number - 1) * self._step_ns, status)
+            raise instance.no_step((number - 1) * self._step_ns, status)
 
-    def _slave(self, number: int, master: Master) -> Any:
-        slave, every, begin = self._fmus[number], master.decimation[number], self._begins[2 * number]
+    def _instance(self, number: int, master: CoSimulation) -> Any:
+        instance, every, begin = self._fmus[number], master.decimation[number], self._begins[2 * number]
         sets, gets = self._transfers[2 * number : 2 * number + 2]
         written = [place for link in master.connections if link.target == number for place in link.target_places]
-        held = np.setdiff1d(np.arange(len(slave.inputs.values)), written).astype(np.intp)
-        return SlaveC(
-            component=slave.component,
-            do_step=ctypes.cast(slave.do_step, Pointer),
+        held = np.setdiff1d(np.arange(len(instance.inputs.values)), written).astype(np.intp)
+        return InstanceC(
+            component=instance.component,
+            do_step=ctypes.cast(instance.do_step, Pointer),
             begin=begin,
-            count=len(slave.inputs.values) + len(slave.outputs.values),
+            count=len(instance.inputs.values) + len(instance.outputs.values),
             gets=ctypes.addressof(gets.array),
             sets=ctypes.addressof(sets.array),
             get_count=len(gets.array),
@@ -187,7 +187,7 @@ class _Plan:
         ours = np.isin(link.target_places, self._fmus[link.target].sets[number].places)
         source, target = self._begins[2 * link.source + 1], self._begins[2 * link.target]
         return LinkC(
-            ctypes.addressof(self._slaves) + link.target * ctypes.sizeof(SlaveC),
+            ctypes.addressof(self._instances) + link.target * ctypes.sizeof(InstanceC),
             ctypes.addressof(self._transfers[2 * link.target].array) + number * ctypes.sizeof(TransferC),
             self._places(self._columns[source + link.source_places[ours]]),
             self._places(self._columns[target + link.target_places[ours]]),
@@ -201,7 +201,7 @@ class _Plan:
 
 
 class _Transfers:
-    """The transfers of one direction of a slave; real ones first, the integers of all others in one array."""
+    """The transfers of one direction of an instance; real ones first, the integers of all others in one array."""
 
     def __init__(self, group: list[Transfer], begin: int) -> None:
         self.integer_count = sum(item.count for item in group if not _is_real(item))

@@ -1,4 +1,4 @@
-"""The connections of a master: all signals from one slave to another as two index arrays."""
+"""The connections of a master: all signals from one instance to another as two index arrays."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from modelkit.connections import CannotConnectError, Part, Wire, connections
-from orchestrator.cosim.slave import Array, Indices, Slave
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices
 from orchestrator.text.errors import BadInput
 
 
 class Connection(NamedTuple):
-    """Signals from one slave to another, as two index arrays."""
+    """Signals from one instance to another, as two index arrays."""
 
     source: int
     source_places: Indices
@@ -21,19 +21,19 @@ class Connection(NamedTuple):
     """What makes the values of the inputs from those of the outputs; None: they are the same."""
 
 
-def connect(slaves: list[Slave]) -> list[Connection]:
-    """Return the connections of ``slaves`` by equal names.
+def connect(instances: list[FmuInstance]) -> list[Connection]:
+    """Return the connections of ``instances`` by equal names.
 
-    Raises ``BadInput`` if a pair differs in type or unit, or if two slaves offer the same input.
+    Raises ``BadInput`` if a pair differs in type or unit, or if two instances offer the same input.
     """
     try:
-        return bundle_wires(connections([part_of_slave(slave) for slave in slaves]))
+        return bundle_wires(connections([part_of_instance(instance) for instance in instances]))
     except CannotConnectError as error:
         raise BadInput(error.text, key=error.signal) from None
 
 
 def bundle_wires(wires: list[Wire]) -> list[Connection]:
-    """Return one connection for each pair of slaves."""
+    """Return one connection for each pair of instances."""
     pairs: dict[tuple[int, int], list[Wire]] = {}
     for wire in wires:
         pairs.setdefault((wire.source, wire.target), []).append(wire)
@@ -43,11 +43,11 @@ def bundle_wires(wires: list[Wire]) -> list[Connection]:
     ]
 
 
-def part_of_slave(slave: Slave) -> Part:
-    """Return a slave as far as connecting it goes: without what is only told under its name."""
-    unsaid = slave.inputs.unsaid | slave.outputs.unsaid
-    inputs = slave.inputs.variables[: slave.inputs.own]
-    return Part(slave.name, inputs, slave.outputs.variables, unsaid)
+def part_of_instance(instance: FmuInstance) -> Part:
+    """Return an instance as far as connecting it goes: without what is only told under its name."""
+    unsaid = instance.inputs.unsaid | instance.outputs.unsaid
+    inputs = instance.inputs.variables[: instance.inputs.own]
+    return Part(instance.name, inputs, instance.outputs.variables, unsaid)
 
 
 def _places(items: list[int]) -> Indices:

@@ -8,8 +8,8 @@ from collections import deque
 import numpy as np
 
 from modelkit.random import normal, seed_state, uniform
-from orchestrator.cosim.master import Manipulator, Master
-from orchestrator.cosim.slave import Array, Indices, Slave
+from orchestrator.cosim.algorithm import CoSimulation, Manipulator
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.quantities import number, scalar
@@ -18,8 +18,8 @@ from orchestrator.text.quantities import number, scalar
 class _Window:
     """A fault's place and time."""
 
-    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices) -> None:
-        self.slave = slave
+    def __init__(self, fault: Fault, instance: int, values: Array, places: Indices) -> None:
+        self.instance = instance
         self._values = values
         self._places = places
         self._start_ns = round(fault.start * 1e9)
@@ -32,8 +32,8 @@ class _Window:
 class Override(_Window):
     """The receiver sees ``value``."""
 
-    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, value: float) -> None:
-        super().__init__(fault, slave, values, places)
+    def __init__(self, fault: Fault, instance: int, values: Array, places: Indices, value: float) -> None:
+        super().__init__(fault, instance, values, places)
         self._value = value
 
     def apply(self, t_ns: int) -> None:
@@ -60,8 +60,8 @@ class Freeze(_Window):
 class Drop(_Window):
     """Each exchange is lost with a probability; the receiver keeps what it received last."""
 
-    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, seed: int) -> None:
-        super().__init__(fault, slave, values, places)
+    def __init__(self, fault: Fault, instance: int, values: Array, places: Indices, seed: int) -> None:
+        super().__init__(fault, instance, values, places)
         self._probability = fault.probability
         self._random = seed_state(seed)
         self._last: Array = values[places].copy()
@@ -79,8 +79,8 @@ class Drop(_Window):
 class Delay(_Window):
     """The receiver sees an old value; before there is one that old, the first one."""
 
-    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices) -> None:
-        super().__init__(fault, slave, values, places)
+    def __init__(self, fault: Fault, instance: int, values: Array, places: Indices) -> None:
+        super().__init__(fault, instance, values, places)
         self._delay_ns = round((fault.delay or 0.0) * 1e9)
         self._past: deque[tuple[int, Array]] = deque()
 
@@ -96,8 +96,8 @@ class Delay(_Window):
 class Noise(_Window):
     """White Gaussian noise on every exchange, the same for the same seed."""
 
-    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, sigma: float, seed: int) -> None:
-        super().__init__(fault, slave, values, places)
+    def __init__(self, fault: Fault, instance: int, values: Array, places: Indices, sigma: float, seed: int) -> None:
+        super().__init__(fault, instance, values, places)
         self._sigma = sigma
         self._random = seed_state(seed)
 
@@ -110,12 +110,12 @@ class Noise(_Window):
             self._values[place] += self._sigma * draw
 
 
-def manipulators(faults: list[Fault], master: Master, seed: int, file: object = None) -> list[Manipulator]:
+def manipulators(faults: list[Fault], master: CoSimulation, seed: int, file: object = None) -> list[Manipulator]:
     """Return a manipulator for every receiver of every fault. Raises ``BadInput`` for an unknown signal."""
     made: list[Manipulator] = []
-    for count, slave, places in receivers(faults, master, file):
+    for count, instance, places in receivers(faults, master, file):
         own_seed = seed * SEED_STRIDE + len(made)
-        made.append(_make(faults[count], slave, places, master.slaves, own_seed, file, f"faults[{count + 1}]"))
+        made.append(_make(faults[count], instance, places, master.instances, own_seed, file, f"faults[{count + 1}]"))
     return made
 
 
@@ -123,8 +123,8 @@ SEED_STRIDE = 1000
 """Seeds of the manipulators of a run: so many times its own, and their number."""
 
 
-def receivers(faults: list[Fault], master: Master, file: object = None) -> list[tuple[int, int, list[int]]]:
-    """Return (fault, slave, input places) of every receiver of every fault, by their numbers, in their order.
+def receivers(faults: list[Fault], master: CoSimulation, file: object = None) -> list[tuple[int, int, list[int]]]:
+    """Return (fault, instance, input places) of every receiver of every fault, by their numbers, in their order.
 
     Raises ``BadInput`` for an unknown signal, or a fault that lacks something.
     """
@@ -133,15 +133,15 @@ def receivers(faults: list[Fault], master: Master, file: object = None) -> list[
         key = f"faults[{count + 1}]"
         fault.check(file, key)
         heard = _receivers(fault.signal, master, file, f"{key}.signal")
-        found += [(count, slave, places) for slave, places in heard]
+        found += [(count, instance, places) for instance, places in heard]
     return found
 
 
 def _make(
-    fault: Fault, slave: int, places: list[int], slaves: list[Slave], seed: int, file: object, key: str
+    fault: Fault, instance: int, places: list[int], instances: list[FmuInstance], seed: int, file: object, key: str
 ) -> Manipulator:
-    ports = slaves[slave].inputs
-    where: tuple[Fault, int, Array, Indices] = (fault, slave, ports.values, np.array(places, dtype=np.intp))
+    ports = instances[instance].inputs
+    where: tuple[Fault, int, Array, Indices] = (fault, instance, ports.values, np.array(places, dtype=np.intp))
     first = ports.variables[places[0]]
     if fault.kind == "stuck_at_last":
         return Freeze(*where)
@@ -161,14 +161,14 @@ def _make(
     return Override(*where, float(scalar(fault.value, first, file=file)))
 
 
-def _receivers(signal: str, master: Master, file: object, key: str) -> list[tuple[int, list[int]]]:
-    """Return (slave number, input places) of everything that hears ``signal``; who is only told it is not disturbed."""
-    slaves = master.slaves
+def _receivers(signal: str, master: CoSimulation, file: object, key: str) -> list[tuple[int, list[int]]]:
+    """Return (instance number, input places) of all that receive ``signal``; values set from outside are not."""
+    instances = master.instances
     owner, _, name = signal.partition(".")
-    names = [slave.name for slave in slaves]
+    names = [instance.name for instance in instances]
     if owner not in names:
         raise BadInput(f"{signal!r}: expected one of {', '.join(names)} before the dot", file=file, key=key)
-    own = slaves[names.index(owner)]
+    own = instances[names.index(owner)]
     inputs = own.inputs.names[: own.inputs.own]
     if _matching(inputs, name):
         return [(names.index(owner), _matching(inputs, name))]
@@ -179,7 +179,7 @@ def _receivers(signal: str, master: Master, file: object, key: str) -> list[tupl
     places: dict[int, set[int]] = {}
     for link in master.connections:
         for source, target in zip(link.source_places.tolist(), link.target_places.tolist(), strict=True):
-            if slaves[link.source] is own and source in sent and target < slaves[link.target].inputs.own:
+            if instances[link.source] is own and source in sent and target < instances[link.target].inputs.own:
                 places.setdefault(link.target, set()).add(target)
     heard = [(number, sorted(places[number])) for number in sorted(places)]
     if not heard:

@@ -26,7 +26,7 @@ TAKES = {"python": "", "native": " (some seconds, once for each change of the mo
 
 
 def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:
-    """Return slave name -> up-to-date FMU of ``kind``."""
+    """Return instance name -> up-to-date FMU of ``kind``."""
     from fmus.cache_paths import DIST
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}

@@ -2,7 +2,7 @@
 
 from contextlib import AbstractContextManager
 
-from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.text.ends import stop_on_signal
 
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.master import End
-from orchestrator.cosim.slave import Array, Indices, Slave, all_values, places_of
+from orchestrator.cosim.algorithm import Termination
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices, all_values, places_of
 from orchestrator.scenario.fault import Fault
 
 DEBUG, INFO, WARNING, ERROR = 1, 2, 3, 4
@@ -26,11 +26,13 @@ class _Mode(NamedTuple):
 class ModeChanges:
     """Observer that says what changes."""
 
-    def __init__(self, slaves: list[Slave], faults: Iterable[Fault], say: Say) -> None:
+    def __init__(self, instances: list[FmuInstance], faults: Iterable[Fault], say: Say) -> None:
         self._say = say
-        self._values = all_values(slaves)
-        outputs = places_of(slaves)[1::2]
-        self._modes = [mode for slave, part in zip(slaves, outputs, strict=True) for mode in _modes(slave, part.start)]
+        self._values = all_values(instances)
+        outputs = places_of(instances)[1::2]
+        self._modes = [
+            mode for instance, part in zip(instances, outputs, strict=True) for mode in _modes(instance, part.start)
+        ]
         self._places: Indices = np.array([mode.place for mode in self._modes], dtype=np.intp)
         self._before = self._values[self._places].tobytes()
         edges = [(round(fault.start * 1e9), f"{fault.kind} of {fault.signal} begins") for fault in faults]
@@ -48,7 +50,7 @@ class ModeChanges:
             self._tell(t_ns, np.frombuffer(self._before), np.frombuffer(now))
             self._before = now
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Say why the run ended."""
         level = ERROR if end.reason.startswith("error") else INFO
         self._say(end.t_ns, level, "run", f"ended: {end.reason}")
@@ -61,10 +63,10 @@ class ModeChanges:
                 self._say(t_ns, level, mode.name, f"{was} -> {becomes}")
 
 
-def _modes(slave: Slave, start: int) -> list[_Mode]:
+def _modes(instance: FmuInstance, start: int) -> list[_Mode]:
     """Return the modes among the outputs, which begin at ``start`` in the array of all values."""
     return [
-        _Mode(start + place, f"{slave.name}.{item.name}", {int(state): state.name for state in item.signal.states})
-        for place, item in enumerate(slave.outputs.variables)
+        _Mode(start + place, f"{instance.name}.{item.name}", {int(state): state.name for state in item.signal.states})
+        for place, item in enumerate(instance.outputs.variables)
         if item.signal.states is not None
     ]

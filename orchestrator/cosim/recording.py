@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor, variables
-from orchestrator.cosim.master import End
+from orchestrator.cosim.algorithm import Termination
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, all_values
 from orchestrator.cosim.signal_blocks import BlockSignals, SignalBlocks, Times
-from orchestrator.cosim.slave import Array, Slave, all_values
 
 
 @dataclass
 class Recording:
-    """Names are ``slave.variable``: ``vehicle.pose.x``, ``controller.phase``."""
+    """Names are ``instance.variable``: ``vehicle.pose.x``, ``controller.phase``."""
 
     t_ns: Times
     """Time of each exchange [ns]."""
@@ -84,14 +84,14 @@ class Recording:
         states = self.variables[name].signal.states if name in self.variables else None
         return {} if states is None else {int(state): state.name for state in states}
 
-    def parameters_of(self, slave: str) -> dict[str, float]:
-        """Return the parameters of one slave by their own flat names."""
-        prefix = slave + "."
+    def parameters_of(self, instance: str) -> dict[str, float]:
+        """Return the parameters of one instance by their own flat names."""
+        prefix = instance + "."
         return {name.removeprefix(prefix): value for name, value in self.parameters.items() if name.startswith(prefix)}
 
-    def values_at(self, slave: str, row: int) -> dict[str, float]:
-        """Return the signals of one slave at one exchange, by their own flat names."""
-        prefix = slave + "."
+    def values_at(self, instance: str, row: int) -> dict[str, float]:
+        """Return the signals of one instance at one exchange, by their own flat names."""
+        prefix = instance + "."
         return {
             name.removeprefix(prefix): float(values[row])
             for name, values in self.signals.items()
@@ -169,9 +169,9 @@ class StoredRecording(Recording):
                 values[low:high] = self.blocks.column(name, begin, stop)[at - begin]
         return Recording(times, signals, self.parameters, self.variables, self.info)
 
-    def values_at(self, slave: str, row: int) -> dict[str, float]:
-        """Return the signals of one slave at one exchange, by their own flat names."""
-        return self.rows([row]).values_at(slave, 0)
+    def values_at(self, instance: str, row: int) -> dict[str, float]:
+        """Return the signals of one instance at one exchange, by their own flat names."""
+        return self.rows([row]).values_at(instance, 0)
 
 
 def recording_of(
@@ -183,20 +183,24 @@ def recording_of(
     return Recording(blocks.times, blocks.columns, parameters, variables, info)
 
 
-def inputs_seen(recording: Recording, slave: str, model: Model) -> list[Any]:
-    """Return what ``slave``, which is ``model``, was given at each exchange."""
+def inputs_seen(recording: Recording, instance: str, model: Model) -> list[Any]:
+    """Return what ``instance``, which is ``model``, was given at each exchange."""
     build = constructor(model.inputs)
-    columns = [recording.signals[f"{slave}.{item.name}"] for item in variables(model.inputs)]
+    columns = [recording.signals[f"{instance}.{item.name}"] for item in variables(model.inputs)]
     return [build(row) for row in np.column_stack(columns).tolist()]
 
 
 class Recorder:
     """Observer that keeps every exchange: of a long run not in memory."""
 
-    def __init__(self, slaves: list[Slave], exchanges: int) -> None:
-        self._slaves = slaves
-        self._values = all_values(slaves)
-        seen = [(slave.name, item) for slave in slaves for item in slave.inputs.variables + slave.outputs.variables]
+    def __init__(self, instances: list[FmuInstance], exchanges: int) -> None:
+        self._instances = instances
+        self._values = all_values(instances)
+        seen = [
+            (instance.name, item)
+            for instance in instances
+            for item in instance.inputs.variables + instance.outputs.variables
+        ]
         names = [f"{owner}.{item.name}" for owner, item in seen]
         self._variables = dict(zip(names, (item for _, item in seen), strict=True))
         self._blocks = SignalBlocks(names, exchanges)
@@ -205,7 +209,7 @@ class Recorder:
         """Copy all inputs and outputs."""
         self._blocks.append(t_ns, self._values)
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""
 
     @property
@@ -217,10 +221,10 @@ class Recorder:
         """Return what has been seen so far."""
         meanings = dict(self._variables)
         parameters: dict[str, float] = {}
-        for slave in self._slaves:
-            for place, variable in enumerate(slave.parameters.variables):
-                parameters[f"{slave.name}.{variable.name}"] = float(slave.parameters.values[place])
-                meanings[f"{slave.name}.{variable.name}"] = variable
+        for instance in self._instances:
+            for place, variable in enumerate(instance.parameters.variables):
+                parameters[f"{instance.name}.{variable.name}"] = float(instance.parameters.values[place])
+                meanings[f"{instance.name}.{variable.name}"] = variable
         return recording_of(self._blocks, parameters, meanings, info)
 
 

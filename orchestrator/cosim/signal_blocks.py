@@ -15,7 +15,7 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.text.errors import NotRunError
 
 MEMORY_BYTES = 64 << 20

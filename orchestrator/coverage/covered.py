@@ -11,7 +11,7 @@ from modelkit.model import Chart
 from orchestrator.coverage.tracer import Seen, name_of
 
 
-class RowCovered(NamedTuple):
+class RowCoverage(NamedTuple):
     """One transition."""
 
     source: str
@@ -37,12 +37,12 @@ class ChartCoverage(NamedTuple):
     """The output that tells its state."""
     states: dict[str, int]
     """State -> samples in it."""
-    rows: list[RowCovered]
+    rows: list[RowCoverage]
     has_guards: bool = True
     """False: only its state is known, not what it decides on."""
     is_listed: bool = True
     """False: the rows are those seen; how many there are nobody says."""
-    beside: Sequence[RowCovered] = ()
+    beside: Sequence[RowCoverage] = ()
     """Transitions seen that are not listed."""
 
     @property
@@ -80,7 +80,7 @@ def chart_coverage(chart: Chart, seen: Seen) -> ChartCoverage:
                 break
             refused[number] += count
     names = [(_name(chart, row[0]), chart.guards(row[1]).name, _name(chart, row[2])) for row in chart.rows]
-    rows = [RowCovered(*row, yes, no) for row, yes, no in zip(names, taken, refused, strict=True)]
+    rows = [RowCoverage(*row, yes, no) for row, yes, no in zip(names, taken, refused, strict=True)]
     counts = {state.name: count for state, count in states.items()}
     return ChartCoverage(name_of(chart), chart.signal, counts, rows)
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
-from orchestrator.coverage.covered import ChartCoverage, RowCovered
+from orchestrator.coverage.covered import ChartCoverage, RowCoverage
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.modes import ANY, ModeList, word
 from orchestrator.scenario.wiring.system_text import Feed, terms
@@ -27,15 +27,15 @@ class Modes:
     def __init__(self) -> None:
         self._found: dict[tuple[str, str], _ModeSeen] = {}
         self.ours: set[str] = set()
-        """Slaves that were ours in one test at least."""
+        """Instances that were ours in one test at least."""
 
     def look(self, scenario: Scenario, files: Files, recording: Recording) -> None:
-        """Count what a run has been through; ``files``: slave -> FMU of somebody else's."""
+        """Count what a run has been through; ``files``: instance -> FMU of somebody else's."""
         there = {name.partition(".")[0] for name in recording.signals}
         self.ours |= there & set(scenario.places) - set(files)
         for signal, listed in modes_of(scenario, files, recording).items():
-            slave, _, name = signal.partition(".")
-            file = files[slave].name if slave in files else slave
+            instance, _, name = signal.partition(".")
+            file = files[instance].name if instance in files else instance
             self._found.setdefault((file, name), _ModeSeen()).add(listed, recording, signal)
 
     def chart_coverages(self) -> list[ChartCoverage]:
@@ -104,10 +104,10 @@ class _ModeSeen:
             source, target = self._name(before), self._name(after)
             pair = next((item for item in ((source, target), (ANY, target)) if item in self._pairs), None)
             if pair is None:
-                beside.append(RowCovered(source, "", target, count, 0))
+                beside.append(RowCoverage(source, "", target, count, 0))
             else:
                 taken[pair] += count
-        listed = [RowCovered(source, "", target, taken[source, target], 0) for source, target in self._pairs]
+        listed = [RowCoverage(source, "", target, taken[source, target], 0) for source, target in self._pairs]
         rows, beside = (listed, beside) if listed else (beside, [])
         return ChartCoverage(file, signal, states, rows, False, bool(listed), beside)
 

@@ -10,7 +10,7 @@ from rich.table import Table
 from fmus.files import write_whole
 from orchestrator.coverage.branches import Branch, branch_share
 from orchestrator.coverage.coverage import Coverage
-from orchestrator.coverage.covered import ChartCoverage, RowCovered, share
+from orchestrator.coverage.covered import ChartCoverage, RowCoverage, share
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.report.page import still_page
 
@@ -142,7 +142,7 @@ def _chart(chart: ChartCoverage) -> str:
     )
 
 
-def _row(row: RowCovered, has_guard: bool, note: str = "") -> str:
+def _row(row: RowCoverage, has_guard: bool, note: str = "") -> str:
     kind = "missed" if not row.count_taken else "half" if note or (has_guard and not row.refused) else ""
     refused = f"<td>{row.refused}</td>" if has_guard else f"<td>{note}</td>"
     return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.count_taken}</td>{refused}</tr>'

@@ -15,7 +15,7 @@ LETTER, LINE, PADDING = 6.6, 14.0, 22.0
 """Width of a letter, distance of two lines, and what a state is wider than its name [px]."""
 MIN_WIDTH = 110.0
 ANY = "any state"
-STUB = 26.0
+ARROW_LENGTH = 26.0
 """Length of the arrow of a row for any state [px]."""
 PLACES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.27, 0.73, 0.2, 0.8, 0.14, 0.86)
 """Where along its arc a label may lie, best first."""
@@ -133,7 +133,7 @@ def _box(label: _Label, guards: list[str], side: int) -> _Box:
 def _spots(pair: Pair, layout: _Layout) -> Iterator[_Label]:
     """Yield where the words of an arc may lie, best first."""
     if pair[0] == ANY:
-        yield _Label(layout.width / 2 + STUB + 5.0, layout.place[pair[1]])
+        yield _Label(layout.width / 2 + ARROW_LENGTH + 5.0, layout.place[pair[1]])
         return
     start, end, edge, reach = _ends(pair, layout)
     for part in PLACES:
@@ -164,7 +164,7 @@ def _arc(pair: Pair, layout: _Layout, label: _Label) -> str:
     side, guards = _side(pair, layout.place), layout.merged[pair]
     if pair[0] == ANY:
         end, edge = layout.place[pair[1]], layout.width / 2
-        curve = f"M{edge + STUB:.1f},{end:.1f} L{edge:.1f},{end:.1f}"
+        curve = f"M{edge + ARROW_LENGTH:.1f},{end:.1f} L{edge:.1f},{end:.1f}"
     else:
         start, end, edge, reach = _ends(pair, layout)
         curve = f"M{edge:.1f},{start:.1f} C{reach:.1f},{start:.1f} {reach:.1f},{end:.1f} {edge:.1f},{end:.1f}"

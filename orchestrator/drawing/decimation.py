@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array, Indices
 from orchestrator.cosim.recording import Recording, StoredRecording
-from orchestrator.cosim.slave import Array, Indices
 
 MAX_VALUES = 3_000_000
 """Of all signals at all kept instants."""

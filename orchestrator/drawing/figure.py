@@ -16,7 +16,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse, Patch, Polygon
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.drawing.looks import CAR, PERSON, looks
 from orchestrator.drawing.overview import Overview
 from orchestrator.drawing.palette import LIGHT, role

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.verdict.geometry import Box, CarOutline, Kerb
 
 

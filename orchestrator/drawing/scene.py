@@ -18,7 +18,7 @@ from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.duration_pb2 import Duration
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, Kerb
 
 WORLD = "world"

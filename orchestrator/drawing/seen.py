@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.drawing.decimation import decimate
 from orchestrator.drawing.overview import Overview, Ribbon, Standing
 from orchestrator.drawing.panels import PICTURE_MODES, picture_signals

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.drawing.overview import Overview
 from orchestrator.drawing.palette import LIGHT
 from orchestrator.drawing.panels import DEGREE, Panel, PanelCurve

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from fmus.files import whole
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.drawing.figure import BLUE, INK, STYLE, draw_scene, draw_thing
 from orchestrator.drawing.overview import Overview
 from orchestrator.text.errors import BadInput
@@ -33,9 +33,9 @@ INCHES = (12.8, 7.2)
 """Size of the picture; the width in pixels chooses its resolution."""
 PLAN, CURVES = (0.05, 0.33, 0.93, 0.58), ((0.06, 0.08, 0.4, 0.17), (0.56, 0.08, 0.4, 0.17))
 """Axes of the top view and of the two curves, as shares of the picture."""
-OUTLINES = 60
+MAX_OUTLINES = 60
 """So many outlines of the car along its way have room in the top view."""
-HELD = 1.0
+LAST_FRAME_TIME = 1.0
 """The last frame is seen so long [s]."""
 NO_FFMPEG = "an .mp4 is written by the program ffmpeg, which is not on the PATH: install it, or write a .gif"
 
@@ -67,7 +67,7 @@ def write_video(path: Path, seen: Overview, options: VideoOptions) -> int:
     rate = FRAME_RATES[path.suffix.lower()]
     times = _times(seen, options.speed / rate)
     with whole(path) as part, mpl.rc_context(STYLE):
-        frames = _frames(seen, [*times, *[times[-1]] * round(HELD * rate)], options.width)
+        frames = _frames(seen, [*times, *[times[-1]] * round(LAST_FRAME_TIME * rate)], options.width)
         count = _write_gif(part, frames, rate) if path.suffix.lower() == ".gif" else _write_mp4(part, frames, rate)
     return count
 
@@ -108,7 +108,7 @@ class _Moving:
         draw_scene(self._plan, seen, [box for box in seen.around.things if not box.comes_or_goes])
         x, y = seen.signal("vehicle.pose.x"), seen.signal("vehicle.pose.y")
         self._plan.plot(x, y, alpha=0.0)
-        rows = np.linspace(0, len(seen.t) - 1, OUTLINES).astype(int)
+        rows = np.linspace(0, len(seen.t) - 1, MAX_OUTLINES).astype(int)
         ends = np.vstack([place(seen.car.outline(), *self._pose(row)) for row in rows])
         self._plan.plot(*ends.T, alpha=0.0)
         figure.text(0.02, 0.965, seen.title, fontweight="bold", color=INK, va="center", fontsize=11.0)

@@ -12,8 +12,8 @@ import numpy as np
 from fmus.files import whole
 from fmus.installation import missing_package
 from modelkit.variables import Variable
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.drawing.decimation import decimate
 from orchestrator.drawing.panels import PANELS
 from orchestrator.export.csv import add_run_arguments

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.falsification.objective import objective_of
 from orchestrator.falsification.subject import Subject
 from orchestrator.falsification.written import space_of
-from orchestrator.session.foreign import Foreign, fitting, fmu_of, parameters_of
+from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, parameters_of
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compile_models, rows_by
 from orchestrator.sweep.engine import ChunkTask
@@ -69,11 +69,11 @@ def _task(study: Study, arguments: argparse.Namespace) -> ChunkTask:
 
 def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
     """Return one row of measures per run of ``chunk`` with FMUs of somebody else's; what they do not tell is NaN."""
-    foreign = Foreign({name: Path(path) for name, path in files.items()})
-    own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
+    foreign = ImportedFmus({name: Path(path) for name, path in files.items()})
+    own = {instance: parameters_of(path, instance) for instance, path in foreign.files.items()}
 
     def row(number: int) -> Array:
-        scenario, _ = fitting(chunk_scenario(job, chunk, number), own)
+        scenario, _ = bind_parameters(chunk_scenario(job, chunk, number), own)
         ran = run_scenario(scenario, None, foreign=foreign)
         return row_of(ran.recording, scenario, job.measures)
 

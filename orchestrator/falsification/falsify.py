@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.slave import Array
 from orchestrator.falsification.counterexamples import Counterexample, write_counterexample
 from orchestrator.falsification.search import Drawn, Seed, cma_es, global_sampling, monte_carlo
 from orchestrator.falsification.sensitivity import SobolIndices, first_orders, total_index

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.requirements import REQUIREMENT_SETS, Requirement, library_requirements
 from orchestrator.sweep.rows import measure_of
 from orchestrator.sweep.study.study import Objective, Study

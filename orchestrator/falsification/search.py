@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.falsification.subject import Subject
 from orchestrator.falsification.subset_simulation import LAST_SEED
 from orchestrator.sweep.study.space import Seeds

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.falsification.search import Seed
 from orchestrator.falsification.subject import Subject
 from orchestrator.sweep.study.space import Space

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fmus.files import whole
-from orchestrator.cosim.master import Interrupt
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.algorithm import Interrupt
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.falsification.objective import smallest
 from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.sweep.columns import fill_columns
@@ -31,7 +31,7 @@ CHUNKS_PER_WORKER = 4
 """Chunks of a batch for each worker."""
 
 
-class Seen(NamedTuple):
+class Evaluations(NamedTuple):
     """What some runs came to."""
 
     margins: Array
@@ -60,7 +60,7 @@ class Subject:
         """Return the margins of runs at points (n, factors) of the unit cube."""
         return self.see(shares, seeds).margins
 
-    def see(self, shares: Array, seeds: Seeds) -> Seen:
+    def see(self, shares: Array, seeds: Seeds) -> Evaluations:
         """Return what runs come to, from the journal if they were made before. Raises ``Stopped``."""
         part = self._journal / f"{self._batches:06d}.npz"
         self._batches += 1
@@ -76,7 +76,7 @@ class Subject:
         seeds = np.array([seed], dtype=np.int64)
         return Chunk(0, 0, self.space.values(shares[None], seeds), seeds)
 
-    def _run_part(self, part: Path, shares: Array, seeds: Seeds) -> Seen:
+    def _run_part(self, part: Path, shares: Array, seeds: Seeds) -> Evaluations:
         values = self.space.values(shares, seeds)
         design = Design(self.study.design.fields, values, seeds, self.space.values_by_name(shares))
         study = self.study._replace(design=design)
@@ -89,7 +89,7 @@ class Subject:
             words[here] = _words(columns)
         if self.interrupt.requested and np.isnan(margins).any():
             raise Stopped
-        seen = Seen(margins, words.astype(str))
+        seen = Evaluations(margins, words.astype(str))
         with whole(part) as beside, beside.open("wb") as file:
             np.savez(file, shares=shares, seeds=seeds, margins=seen.margins, words=seen.words)
         return seen
@@ -105,7 +105,7 @@ ABORTED_MARGIN = 1.0
 """A run that a model has aborted is beyond its limits by this at least: nobody knows what it would have come to."""
 
 
-def _read_part(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
+def _read_part(part: Path, shares: Array, seeds: Seeds) -> Evaluations | None:
     """Return what is in the journal of just these runs; None if nothing is, or what is there is damaged.
 
     What cannot be read for lack of memory or files is not damaged: the error passes through.
@@ -127,7 +127,7 @@ def _read_part(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
     if not whole or margins.dtype != np.float64 or words.dtype.kind != "U" or np.isnan(margins).any():
         say(f"apa: warning: {part}: is not what a hunt writes; its runs are made again")
         return None
-    return Seen(margins, words)
+    return Evaluations(margins, words)
 
 
 def _margins(objective: Objective, job: Job, chunk: Chunk, rows: Array, columns: Columns) -> Array:

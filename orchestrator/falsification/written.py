@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field
 from orchestrator.sweep.study.space import Factor, Seeds, Space

@@ -6,7 +6,15 @@ from typing import Any, NamedTuple
 
 from controller_fmu.valet.params import SlotWish
 from orchestrator.grid.cases import CARS
-from orchestrator.grid.found_slots import SEED_STRIDE, FoundCase, SlotPlace, boxes_of, place_of, size_of, standing_of
+from orchestrator.grid.found_slots import (
+    SEED_STRIDE,
+    DetectedSlotCase,
+    SlotPlace,
+    boxes_of,
+    place_of,
+    size_of,
+    standing_of,
+)
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.obstacle_map import box_corners
@@ -27,7 +35,7 @@ AT_WALL = 0.5
 """Left between the driver's way past and the street's other side [m]."""
 
 
-def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
+def scenario_of(case: DetectedSlotCase, told: bool = False) -> Scenario:
     """Return the scenario of a case; ``told``: the valet does not search, it is told the map and the target."""
     target, slot = standing_of(case)
     wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
@@ -56,7 +64,7 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
     )
 
 
-def out_of(case: FoundCase) -> Scenario:
+def out_of(case: DetectedSlotCase) -> Scenario:
     """Return the scenario in which the car stands in the slot and comes out into the street, to either side.
 
     It is told the map, and where to hand over: along the street, its middle beyond the neighbour on that side.
@@ -94,7 +102,7 @@ class Street(NamedTuple):
     far: float
 
 
-def _street(case: FoundCase) -> Street:
+def _street(case: DetectedSlotCase) -> Street:
     """Return the street on the right side: no narrower than the driver's way past needs it."""
     near = max(y for box in boxes_of(case)[:2] for _, y in box_corners(box))
     return Street(near, max(near + case.street, _reach(case)))
@@ -108,7 +116,7 @@ class WayPast(NamedTuple):
     way: float
 
 
-def way_past(case: FoundCase) -> WayPast:
+def way_past(case: DetectedSlotCase) -> WayPast:
     """Return the way past both neighbours that keeps the case's distance to everything in the row."""
     length, width = size_of(case)
     front = length - CARS[case.car].rear_overhang
@@ -122,7 +130,7 @@ def way_past(case: FoundCase) -> WayPast:
     return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
 
 
-def _reach(case: FoundCase) -> float:
+def _reach(case: DetectedSlotCase) -> float:
     """Return how far across the road the driver's way needs it to be free: the street is no narrower there."""
     past, car, width = way_past(case), CARS[case.car], size_of(case)[1]
     rise, half = math.sin(case.heading), 0.5 * width * math.cos(case.heading)
@@ -130,7 +138,7 @@ def _reach(case: FoundCase) -> float:
     return max(ends) + half + AT_WALL
 
 
-def _vehicle(case: FoundCase) -> dict[str, Any]:
+def _vehicle(case: DetectedSlotCase) -> dict[str, Any]:
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, place, boxes = CARS[case.car], place_of(case), boxes_of(case)
     length, _ = size_of(case)
@@ -157,7 +165,7 @@ def _vehicle(case: FoundCase) -> dict[str, Any]:
     }
 
 
-def _kerbs(case: FoundCase, place: SlotPlace, length: float) -> list[tuple[float, float, float, float]]:
+def _kerbs(case: DetectedSlotCase, place: SlotPlace, length: float) -> list[tuple[float, float, float, float]]:
     """Return the kerb along the road behind a parallel slot, or the wheel stop in one across it."""
     if case.angle == 0:
         return [(-15.0, -place.depth, place.x + 25.0, -place.depth)]

@@ -26,7 +26,7 @@ AT_KERB = 0.2
 Box = dict[str, float]
 
 
-class FoundCase(NamedTuple):
+class DetectedSlotCase(NamedTuple):
     """One run."""
 
     number: int
@@ -51,12 +51,12 @@ class FoundCase(NamedTuple):
     """Of the driver [m/s]."""
 
 
-def cases(runs: int, lot: int = 0) -> list[FoundCase]:
+def cases(runs: int, lot: int = 0) -> list[DetectedSlotCase]:
     """Return so many cases."""
     return [_case(number, lot) for number in range(runs)]
 
 
-def _case(number: int, lot: int) -> FoundCase:
+def _case(number: int, lot: int) -> DetectedSlotCase:
     draw = random.Random(number + SEED_STRIDE * lot)
     angle = draw.choice((0, 0, *ANGLES, 90))
     nose = draw.random() < (0.7 if angle < 75 else 0.3)
@@ -64,7 +64,7 @@ def _case(number: int, lot: int) -> FoundCase:
     steep = math.radians((15.0 if angle else 8.0) if street > 8.0 else 5.0)
     neighbours = draw.choice(NEIGHBOURS if angle else NEIGHBOURS[:3])
     wider = draw.uniform(0.9, 1.8) if angle == 0 else draw.uniform(0.7, 1.4)
-    return FoundCase(
+    return DetectedSlotCase(
         number=number,
         lot=lot,
         car=draw.choice(list(CARS)),
@@ -94,7 +94,7 @@ class SlotPlace(NamedTuple):
     """From the neighbours' fronts to what the slot ends at; 20: nothing."""
 
 
-def place_of(case: FoundCase) -> SlotPlace:
+def place_of(case: DetectedSlotCase) -> SlotPlace:
     """Return the place of the slot of a case on the right side."""
     length, width = size_of(case)
     if case.angle == 0:
@@ -107,13 +107,13 @@ def place_of(case: FoundCase) -> SlotPlace:
     return SlotPlace(x, -0.5 * length * math.sin(turn), -turn, across / math.sin(turn), depth)
 
 
-def size_of(case: FoundCase) -> tuple[float, float]:
+def size_of(case: DetectedSlotCase) -> tuple[float, float]:
     """Return the car's length and width [m]."""
     car = CARS[case.car]
     return car_length(car), car.width
 
 
-def boxes_of(case: FoundCase) -> list[Box]:
+def boxes_of(case: DetectedSlotCase) -> list[Box]:
     """Return what stands around the slot on the right side, but for the street's other side."""
     length, width = size_of(case)
     place, draw = place_of(case), random.Random(case.number + SEED_STRIDE * case.lot + 17)
@@ -145,7 +145,7 @@ def boxes_of(case: FoundCase) -> list[Box]:
     return boxes
 
 
-def _post(case: FoundCase, place: SlotPlace, sense: float, length: float) -> Box:
+def _post(case: DetectedSlotCase, place: SlotPlace, sense: float, length: float) -> Box:
     """Return a pillar of 0.4 x 0.4 m between the slot and a neighbour, near their fronts."""
     _, width = size_of(case)
     across = (0.5 * (width + case.wider) + 0.2) * sense
@@ -162,7 +162,7 @@ def _behind(place: SlotPlace, length: float, thick: float) -> Box:
     return {"x": x, "y": y, "heading": place.into, "length": thick, "width": 2.2}
 
 
-def standing_of(case: FoundCase) -> tuple[Target, Slot]:
+def standing_of(case: DetectedSlotCase) -> tuple[Target, Slot]:
     """Return where the car should stand, and the slot, on the right side: as its neighbours do, 20 cm from a kerb."""
     car, place = CARS[case.car], place_of(case)
     length, width = size_of(case)
@@ -179,7 +179,7 @@ def standing_of(case: FoundCase) -> tuple[Target, Slot]:
     return target, Slot(x=x, y=y, heading=into, length=length + 0.6, width=width + case.wider)
 
 
-def _between(case: FoundCase, place: SlotPlace, boxes: list[Box]) -> tuple[float, float, float]:
+def _between(case: DetectedSlotCase, place: SlotPlace, boxes: list[Box]) -> tuple[float, float, float]:
     """Return the middle of a slot across the road and its direction: in the middle of what stands on both sides."""
     if case.neighbours == "one":
         return place.x, place.y, boxes[1]["heading"]

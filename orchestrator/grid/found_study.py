@@ -6,7 +6,7 @@ from typing import Any
 from rich.table import Table as Printed
 
 from orchestrator.grid.found_scenarios import out_of, scenario_of
-from orchestrator.grid.found_slots import FoundCase, cases
+from orchestrator.grid.found_slots import DetectedSlotCase, cases
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
@@ -57,7 +57,7 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
     return Study(scenario, design, content, measures=MEASURES)
 
 
-def _planning_scenario(case: FoundCase) -> Scenario:
+def _planning_scenario(case: DetectedSlotCase) -> Scenario:
     """Return the short scenario in which the valet plans with the map and the target told."""
     told = _with_map(scenario_of(case, told=True))
     return told.model_copy(update={"stop_time": PLANNING_TIME, "controller": told.controller | {"plan.at_once": 100}})
@@ -68,7 +68,7 @@ def _with_map(scenario: Scenario) -> Scenario:
     return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
 
 
-def _labels(case: FoundCase, of: str) -> dict[str, str | float]:
+def _labels(case: DetectedSlotCase, of: str) -> dict[str, str | float]:
     own = {name: str(value) if isinstance(value, bool) else value for name, value in case._asdict().items()}
     return {**own, "of": of}
 

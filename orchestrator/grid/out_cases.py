@@ -37,7 +37,7 @@ PASSES = ("nobody", "stands", "walks off")
 PERSON_WIDTH = 0.5
 
 
-class OutCase(NamedTuple):
+class PullOutCase(NamedTuple):
     """One run."""
 
     number: int
@@ -64,12 +64,12 @@ class OutCase(NamedTuple):
     """What a person does who is on the road beside the slot."""
 
 
-def cases(runs: int, lot: int = 0, people: bool = False) -> list[OutCase]:
+def cases(runs: int, lot: int = 0, people: bool = False) -> list[PullOutCase]:
     """Return so many cases; ``people``: with a person on the road beside each slot."""
     return [case_of(number, lot, people) for number in range(runs)]
 
 
-def case_of(number: int, lot: int, people: bool) -> OutCase:
+def case_of(number: int, lot: int, people: bool) -> PullOutCase:
     """Return one case."""
     draw = random.Random(number + SEED_STRIDE * lot)
     kind = draw.choice(list(ROOM))
@@ -77,7 +77,7 @@ def case_of(number: int, lot: int, people: bool) -> OutCase:
     least = MIN_NEIGHBOUR_GAP / extra
     behind = draw.choice(BEHIND)
     beside = draw.uniform(*BESIDE.get(behind, (0.0, 0.0))) if kind == Kind.PARALLEL else draw.uniform(*AT_TAIL)
-    return OutCase(
+    return PullOutCase(
         number=number,
         lot=lot,
         kind=kind,
@@ -105,7 +105,7 @@ class Footprint(NamedTuple):
     y1: float
 
 
-def start_of(case: OutCase) -> tuple[float, float, float]:
+def start_of(case: PullOutCase) -> tuple[float, float, float]:
     """Return where the rear axle of a car stands that comes out to the left: x, y, heading; its outer end at y = 0."""
     car = CARS[case.car]
     if case.kind == Kind.PARALLEL:
@@ -114,7 +114,7 @@ def start_of(case: OutCase) -> tuple[float, float, float]:
     return x, -car.wheelbase - car.front_overhang, 0.5 * math.pi + case.askew
 
 
-def things_of(case: OutCase) -> dict[str, Footprint]:
+def things_of(case: PullOutCase) -> dict[str, Footprint]:
     """Return what stands there on the left: neighbours, what the slot ends at, the other side of the street."""
     car = CARS[case.car]
     across = case.kind == Kind.PERPENDICULAR
@@ -134,7 +134,7 @@ def things_of(case: OutCase) -> dict[str, Footprint]:
     return found
 
 
-def vehicle_of(case: OutCase) -> dict[str, Any]:
+def vehicle_of(case: PullOutCase) -> dict[str, Any]:
     """Return the parameters of the vehicle."""
     things = things_of(case)
     scene: dict[str, Any] = {}
@@ -155,7 +155,7 @@ def vehicle_of(case: OutCase) -> dict[str, Any]:
     return {**car_parameters(CARS[case.car]), **scene, **place, "driver.apa_switch_time": 0.5, **errors}
 
 
-def _passer(case: OutCase) -> dict[str, float]:
+def _passer(case: PullOutCase) -> dict[str, float]:
     """Return a person on the road beside the slot, who stands there for a while, or walks off across the road then."""
     draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
     if case.passes == PASSES[0]:
@@ -169,11 +169,11 @@ def _passer(case: OutCase) -> dict[str, float]:
     return {**person, "speed_y": case.side * speed, "moves_at": leaves, "disappear_at": leaves + 6.0 / speed}
 
 
-def side_of(case: OutCase) -> int:
+def side_of(case: PullOutCase) -> int:
     """Return what the driver chooses."""
     return ChosenSide.LEFT if case.side > 0 else ChosenSide.RIGHT
 
 
-def case_labels(case: OutCase) -> dict[str, str | float]:
+def case_labels(case: PullOutCase) -> dict[str, str | float]:
     """Return what a case is called in the table."""
     return {**case._asdict(), "kind": KINDS[case.kind]}

@@ -11,13 +11,13 @@ from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from modelkit.car import largest_curvature
 from modelkit.vocabulary import Pose
 from orchestrator.grid.cases import CARS
-from orchestrator.grid.out_cases import OutCase, start_of, things_of
+from orchestrator.grid.out_cases import PullOutCase, start_of, things_of
 
 MIN_CLEARANCE = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""
 
 
-def moves_out(case: OutCase) -> int:
+def moves_out(case: PullOutCase) -> int:
     """Return how many moves the planner needs that knows what stands there, with the whole lock; 0: it finds no way."""
     site, car = site_known(case, MIN_CLEARANCE), shape_known(case)
     start = to_slot(Pose(*start_of(case)), site.frame)
@@ -27,13 +27,13 @@ def moves_out(case: OutCase) -> int:
     return plan.moves if plan.status == FOUND else 0
 
 
-def shape_known(case: OutCase) -> Shape:
+def shape_known(case: PullOutCase) -> Shape:
     """Return the outline of the car of a case, with its whole lock."""
     car = CARS[case.car]
     return Shape(car.wheelbase + car.front_overhang, car.rear_overhang, 0.5 * car.width, largest_curvature(car), 0.8)
 
 
-def site_known(case: OutCase, margin: float) -> Site:
+def site_known(case: PullOutCase, margin: float) -> Site:
     """Return what stands there, grown by a margin [m], in the frame that the planner has for such a slot."""
     things = things_of(case)
     across = case.kind == Kind.PERPENDICULAR
@@ -47,7 +47,7 @@ def site_known(case: OutCase, margin: float) -> Site:
     return Site(case.kind, frame, obstacles)
 
 
-def free_ahead(case: OutCase, end: Pose, most: float = 5.0) -> float:
+def free_ahead(case: PullOutCase, end: Pose, most: float = 5.0) -> float:
     """Return how far [m] a car that ended at ``end`` (scene) could drive straight on past its neighbours, ``most``."""
     site, car = site_known(case, 0.0), shape_known(case)
     at = to_slot(Pose(end.x, case.side * end.y, case.side * end.heading), site.frame)

@@ -9,7 +9,7 @@ from rich.table import Table as Printed
 
 from modelkit.vocabulary import Pose
 from orchestrator.grid.cases import CARS, KINDS
-from orchestrator.grid.out_cases import PASSES, OutCase, case_labels, case_of, cases, side_of, vehicle_of
+from orchestrator.grid.out_cases import PASSES, PullOutCase, case_labels, case_of, cases, side_of, vehicle_of
 from orchestrator.grid.out_known import free_ahead, moves_out
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.fault import Fault
@@ -20,7 +20,7 @@ from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure, When
+from orchestrator.verdict.measures import Instants, Measure
 
 STOP_TIME = 150.0
 STANDSTILL_SPEED = 0.01
@@ -29,14 +29,14 @@ FREE_AHEAD = 3.5
 MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
     "parking_time": Measure("last", "controller.apa.parking_time"),
-    "touched.speed": Measure("first", "vehicle.speed", When("vehicle.contact", (1,))),
+    "touched.speed": Measure("first", "vehicle.speed", Instants("vehicle.contact", (1,))),
 }
 
 
 class OutRun(NamedTuple):
     """What became of a run."""
 
-    case: OutCase
+    case: PullOutCase
     is_out: bool
     reason: str
     nearest: float
@@ -50,7 +50,7 @@ class OutRun(NamedTuple):
     """Moves of the way out that there is, 0: none; not looked for (1) if the car came out."""
 
 
-def scenario_of(case: OutCase) -> Scenario:
+def scenario_of(case: PullOutCase) -> Scenario:
     """Return the scenario of a case: the driver wants out, to the side of the case."""
     return Scenario(
         name="apa-out",

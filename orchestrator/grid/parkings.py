@@ -9,19 +9,19 @@ import numpy as np
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
 from orchestrator.grid.start_range import is_inside
 from orchestrator.sweep.columns import WITHIN
-from orchestrator.sweep.study.study import Columns, Derived
+from orchestrator.sweep.study.study import Columns, DerivedParameter
 from orchestrator.verdict.frame import in_frame
-from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
 
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 FALSE_DETECTION_DISTANCE = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
-SHOWN = When("controller.apa.mode", (int(Mode.PARKING_SPACE_APPEARS),))
+SHOWN = Instants("controller.apa.mode", (int(Mode.PARKING_SPACE_APPEARS),))
 """While the car stands to plan, and the slot it found is shown."""
 POSE, ODOMETRY = "shown.pose", "shown.odometry"
 CORNERS = ("shown.a", "shown.b")
@@ -157,14 +157,14 @@ def _in_frame(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
     return in_frame(*point, 0.0, pose)[:2]
 
 
-FOUND = Derived(
+FOUND = DerivedParameter(
     {
-        "corner_a": Number(
+        "corner_a": Metric(
             "m", "distance of the estimated corner A from the true one, in the vehicle frame; NaN: no slot detected"
         ),
-        "corner_b": Number("m", "the same of corner B"),
-        "along": Number("m", "x of the rear axle beyond corner B when the car stood to plan"),
-        "inside": Number("1", "1: it stood inside the start range then"),
+        "corner_b": Metric("m", "the same of corner B"),
+        "along": Metric("m", "x of the rear axle beyond corner B when the car stood to plan"),
+        "inside": Metric("1", "1: it stood inside the start range then"),
     },
     _detection_columns,
 )

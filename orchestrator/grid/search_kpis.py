@@ -18,7 +18,7 @@ from rich.table import Table as Printed
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import car_length
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
 from orchestrator.grid.parkings import (
     FALSE_DETECTION_DISTANCE,
@@ -31,11 +31,11 @@ from orchestrator.grid.parkings import (
 )
 from orchestrator.grid.parkings import SHOWN as WHILE_SHOWN
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
-from orchestrator.sweep.study.study import Columns, Derived, Study
+from orchestrator.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.numbers import Metric
 
 WIDER: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.8), Kind.PERPENDICULAR: (0.0, 0.5)}
 """Gaps that fit, over ISO 16787's shortest [m]."""
@@ -124,14 +124,14 @@ def _one_shown(row: Mapping[str, float]) -> tuple[str, float, float, float, floa
     return word, a, b, math.remainder(turn, 2.0 * math.pi), right
 
 
-SHOWN = Derived(
+SHOWN = DerivedParameter(
     {
-        "corner_a": Number(
+        "corner_a": Metric(
             "m", "distance of the displayed corner A from the true one, in the vehicle frame; NaN: no slot displayed"
         ),
-        "corner_b": Number("m", "the same of corner B"),
-        "slot_heading": Number("rad", "heading error of the displayed slot, in the vehicle frame"),
-        "kind_right": Number("1", "1: displayed with the correct slot type"),
+        "corner_b": Metric("m", "the same of corner B"),
+        "slot_heading": Metric("rad", "heading error of the displayed slot, in the vehicle frame"),
+        "kind_right": Metric("1", "1: displayed with the correct slot type"),
     },
     _display_columns,
     {"search": "what became of the search: " + ", ".join(WORDS)},

@@ -14,8 +14,8 @@ import numpy as np
 
 from controller_fmu.common.params import LimitParams
 from controller_fmu.interface import Reason
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fmus.installation import missing_package
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.parameter import PRIOR_RANGE, FitParameter
 from orchestrator.identification.playback import DEAD_TIME, dead_time_resolution
 from orchestrator.identification.problem import Problem

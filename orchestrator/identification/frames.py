@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.signals import FRAMES, MeasuredDrive
 
 WINDOW_TIME, MIN_WINDOWS, MAX_WINDOWS = 4.0, 6, 40

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.estimate import NORMAL_95, Estimate, covariance
 from orchestrator.identification.manoeuvres import (
     MANOEUVRES,

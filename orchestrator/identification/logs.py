@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmus.installation import missing_package
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.compiled_vehicle import SIGNALS
 from orchestrator.identification.signals import USED, MeasuredDrive, Series, drive_of
 from orchestrator.log.read_log import read_info, read_log

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.problem import Problem
 from orchestrator.identification.signals import FRAMES, TYPICAL_NOISE, MeasuredDrive, Series, unit_of
 

@@ -7,8 +7,8 @@ import numpy as np
 from fmus.files import write_whole
 from modelkit.signal import Signal
 from modelkit.variables import Variable
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.identification.compiled_vehicle import OUTPUTS, PARAMETERS, SIGNALS
 from orchestrator.identification.frames import FrameFit
 from orchestrator.identification.result import (

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.compiled_vehicle import INPUTS, PARAMETERS, InputSequence
 from orchestrator.identification.parameter import STEERING_ACTUATOR
 from orchestrator.identification.signals import MeasuredDrive, Series

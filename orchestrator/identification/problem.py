@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.compiled_vehicle import OUTPUTS, PARAMETERS, CompiledVehicle
 from orchestrator.identification.frames import FrameFit, Simulated, window_count
 from orchestrator.identification.parameter import FitParameter

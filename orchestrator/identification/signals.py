@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.compiled_vehicle import INPUTS, SIGNALS
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 

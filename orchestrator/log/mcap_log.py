@@ -1,4 +1,4 @@
-"""The log of a run: every exchange of every slave, parameters, pictures and words, in one MCAP file.
+"""The log of a run: every exchange of every instance, parameters, pictures and words, in one MCAP file.
 
 Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
 ``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from modelkit.signal import Role
 from modelkit.variables import Variable
-from orchestrator.cosim.master import End
+from orchestrator.cosim.algorithm import Termination
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
 from orchestrator.cosim.recording import to_json
-from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.drawing import scene
 from orchestrator.log.line import MAX_LINES, Line, line_of
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
@@ -51,14 +51,14 @@ MAX_TRAIL_POSES = 20_000
 AXES = ("x", "y", "heading")
 
 
-class _SlaveChannel:
-    """One channel for all inputs and outputs of a slave; ``columns`` are its inputs, its outputs in a row of all."""
+class _InstanceChannel:
+    """One channel for all inputs and outputs of an instance; ``columns``: its inputs, its outputs in a row of all."""
 
-    def __init__(self, file: Sink, slave: Slave, columns: Sequence[slice]) -> None:
-        variables = [*slave.outputs.variables, *slave.inputs.variables]
-        notes = ["local" if Role.LOCAL in item.roles else "output" for item in slave.outputs.variables]
-        notes += ["input"] * len(slave.inputs.names)
-        self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
+    def __init__(self, file: Sink, instance: FmuInstance, columns: Sequence[slice]) -> None:
+        variables = [*instance.outputs.variables, *instance.inputs.variables]
+        notes = ["local" if Role.LOCAL in item.roles else "output" for item in instance.outputs.variables]
+        notes += ["input"] * len(instance.inputs.names)
+        self._channel = add_channel(file, f"/{instance.name}", instance.name.title().replace("_", ""), variables, notes)
         self._encoder = Encoder(variables)
         self._file = file
         self._inputs, self._outputs = columns
@@ -73,17 +73,21 @@ class _SlaveChannel:
 class McapLog:
     """Observer that writes the log to a file, or to whoever looks on."""
 
-    def __init__(self, to: Path | Sink, slaves: Sequence[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
+    def __init__(
+        self, to: Path | Sink, instances: Sequence[FmuInstance], scenario: Scenario, info: dict[str, Any]
+    ) -> None:
         self._file: Sink = McapFile(to) if isinstance(to, Path) else to
         self._file.metadata("apa", with_checksum(info))
         self.lines: list[Line] = []
         """Of ``/log``."""
-        places = places_of(slaves)
-        self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
+        places = places_of(instances)
+        self._channels = [
+            _InstanceChannel(self._file, instance, places[2 * k : 2 * k + 2]) for k, instance in enumerate(instances)
+        ]
         self._log = self._file.add_channel("/log", Log)
-        for slave in slaves:
-            self._write_parameters(slave)
-        named = {slave.name: slave for slave in slaves}
+        for instance in instances:
+            self._write_parameters(instance)
+        named = {instance.name: instance for instance in instances}
         self._pictures: list[_Pictures] = []
         drawn = _frame_ports(named["vehicle"]) if "vehicle" in named else []
         if drawn:
@@ -91,7 +95,7 @@ class McapLog:
         size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
         rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
-        self._values = all_values(slaves)
+        self._values = all_values(instances)
         self._rows = np.empty((rows, len(self._values)))
         self._times = np.empty(rows, dtype=np.int64)
         self._count = 0
@@ -120,7 +124,7 @@ class McapLog:
         if isinstance(self._file, McapFile):
             self._file.discard()
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Write how the run ended and give the file its name."""
         self._write_rows()
         for pictures in self._pictures:
@@ -135,24 +139,24 @@ class McapLog:
         self._count = 0
         self._file.flush()
 
-    def _write_parameters(self, slave: Slave) -> None:
-        ports: Ports = slave.parameters
+    def _write_parameters(self, instance: FmuInstance) -> None:
+        ports: Ports = instance.parameters
         notes = ["parameter"] * len(ports.names)
-        message = slave.name.title().replace("_", "") + "Parameters"
-        channel = add_channel(self._file, f"/{slave.name}/parameters", message, ports.variables, notes)
+        message = instance.name.title().replace("_", "") + "Parameters"
+        channel = add_channel(self._file, f"/{instance.name}/parameters", message, ports.variables, notes)
         self._file.write(channel, 0, Encoder(ports.variables).encode(ports.values))
 
 
 class _Pictures:
-    """Frames and scene, as far as the slaves have the signals for them."""
+    """Frames and scene, as far as the instances have the signals for them."""
 
     def __init__(
-        self, file: Sink, slaves: dict[str, Slave], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
+        self, file: Sink, instances: dict[str, FmuInstance], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
     ) -> None:
         self._file = file
         self._drawn = drawn
-        self._controller = slaves.get("controller")
-        around = vehicle_parameters(scenario, _values_by_name(slaves["vehicle"].parameters))
+        self._controller = instances.get("controller")
+        around = vehicle_parameters(scenario, _values_by_name(instances["vehicle"].parameters))
         self._car = CarOutline.of(around)
         self._frames = scene.Frames(self._car)
         self._transforms = file.add_channel("/tf", FrameTransforms)
@@ -225,7 +229,7 @@ def add_channel(file: Sink, topic: str, message: str, variables: list[Variable],
     return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
 
 
-def _frame_ports(vehicle: Slave) -> list[tuple[Ports, int] | None]:
+def _frame_ports(vehicle: FmuInstance) -> list[tuple[Ports, int] | None]:
     """Return where pose, odometry and angle of the front wheels are, which frames are made of; empty without a pose.
 
     They may be outputs, or told under the vehicle's name. Odometry that there is not is the pose.

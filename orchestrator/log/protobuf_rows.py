@@ -1,4 +1,4 @@
-"""Protobuf bytes of a slave's values, made by filling a template: every message has the same layout.
+"""Protobuf bytes of an instance's values, made by filling a template: every message has the same layout.
 
 All scalars are written at fixed width (double, sfixed32, one byte for a bool, five bytes for an enum:
 a varint may be padded), zeros included, so that many messages are a few array operations.
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import Variable
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.log.schema import tree
 from orchestrator.text.errors import BadInput
 

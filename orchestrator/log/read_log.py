@@ -17,9 +17,9 @@ from pydantic import BaseModel, Field, StringConstraints, TypeAdapter, Validatio
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.declared import MAX_DESCRIPTION, MAX_ELEMENTS, MAX_ITEMS, MAX_LETTERS
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording, recording_of
 from orchestrator.cosim.signal_blocks import SignalBlocks
-from orchestrator.cosim.slave import Array
 from orchestrator.log.protobuf_rows import Decoder
 from orchestrator.log.records import (
     HEAD,
@@ -39,11 +39,11 @@ from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import MOST_WHOLE
 from orchestrator.text.yaml_file import explain
-from orchestrator.verdict.summary import FmuUsed, Lateness, Started
+from orchestrator.verdict.summary import FmuUsed, Lateness, StartRecord
 
 KINDS: dict[str, type] = {"float": float, "int": int, "bool": bool}
 VARIABLES = "variables"
-"""Channel metadata that describes a message made from the variables of a slave."""
+"""Channel metadata that describes a message made from the variables of an instance."""
 CHECKSUM = "checksum"
 """Key of a metadata record: the checksum of its other values."""
 RECOVERED = "recovered"
@@ -72,7 +72,7 @@ def read_log(path: Path) -> Recording:
     except BadInput:
         raise
     except ValidationError as error:
-        raise explain(error, path, list(Told.model_fields)) from error
+        raise explain(error, path, list(RunInfo.model_fields)) from error
     except NO_MEANING as error:
         raise no_layout(error, path) from error
     lacks = recording.info.get(RECOVERED, {}).get("lacks")
@@ -276,7 +276,7 @@ class _SignalReader:
         self._blocks.extend(times, parts[0][1] if len(parts) == 1 else np.concatenate([rows for _, rows in parts], 1))
 
     def _apart(self) -> BadInput:
-        return BadInput("its slaves have been seen at different times", file=self._path)
+        return BadInput("its instances have been seen at different times", file=self._path)
 
     def recording(self, metadata: dict[str, dict[str, str]]) -> Recording:
         """Return the recording when all messages have been taken."""
@@ -288,7 +288,7 @@ class _SignalReader:
         return recording_of(self._blocks or SignalBlocks([]), self._parameters, self._variables, told)
 
 
-class Told(BaseModel):
+class RunInfo(BaseModel):
     """What a log tells of its run beside its signals, as far as anybody asks for it."""
 
     scenario: dict[str, Any] | None = None
@@ -296,13 +296,13 @@ class Told(BaseModel):
     recovered: dict[str, Any] = {}
     versions: dict[str, str] = {}
     fmus: list[FmuUsed] = []
-    started: Started = Started()
+    started: StartRecord = StartRecord()
     realtime: Lateness | None = None
 
 
 def _run_info(info: dict[str, Any]) -> dict[str, Any]:
     """Return what a log tells of its run. Raises ``ValidationError`` if it is not of the kind that apa writes."""
-    Told(**info)
+    RunInfo(**info)
     return info
 
 

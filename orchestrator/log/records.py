@@ -29,7 +29,7 @@ MAX_CHUNK_BYTES = 1 << 26
 """Of one record, packed or unpacked; chunks of this project have 256 KiB."""
 MOST_UNPACKED, MOST_TIMES = 1 << 30, 64
 """A log may unpack to so many bytes, or to so many times its size if that is more."""
-WINDOW = 1 << 20
+READ_BYTES = 1 << 20
 """Bytes that are read at once where a whole file is gone through."""
 
 
@@ -109,8 +109,8 @@ class LogFile(AbstractContextManager["LogFile"]):
 
     def find(self, mark: bytes, begin: int) -> int:
         """Return where ``mark`` is, from ``begin`` on; -1 if it is not there."""
-        for at in range(begin, self._size, WINDOW):
-            found = self[at : at + WINDOW + len(mark) - 1].find(mark)
+        for at in range(begin, self._size, READ_BYTES):
+            found = self[at : at + READ_BYTES + len(mark) - 1].find(mark)
             if found >= 0:
                 return at + found
         return -1
@@ -168,8 +168,8 @@ def iterate_chunks(data: ByteSource) -> Iterator[RawRecord]:
 
 def _crc(data: ByteSource, begin: int, end: int) -> int:
     crc = 0
-    for at in range(begin, end, WINDOW):
-        crc = zlib.crc32(data[at : min(end, at + WINDOW)], crc)
+    for at in range(begin, end, READ_BYTES):
+        crc = zlib.crc32(data[at : min(end, at + READ_BYTES)], crc)
     return crc
 
 

@@ -35,7 +35,7 @@ MOST_TOLD = 20
 KNOWN = frozenset(int(code) for code in Opcode)
 
 
-class Recovered(NamedTuple):
+class RecoveryResult(NamedTuple):
     """What came out of a log."""
 
     path: Path
@@ -48,7 +48,7 @@ class Recovered(NamedTuple):
     """What is damaged, by its place."""
 
 
-def recover(path: Path) -> Recovered:
+def recover(path: Path) -> RecoveryResult:
     """Write a whole log with all that can be read of ``path``; ``X.mcap.part`` becomes ``X.mcap``.
 
     Any other name gets ``.recovered.mcap``, and so does one whose place is taken: nothing is overwritten. A log that is
@@ -61,14 +61,14 @@ def recover(path: Path) -> Recovered:
             except Damage:
                 pass
             else:
-                return Recovered(path, count, last_ns, True, [])
+                return RecoveryResult(path, count, last_ns, True, [])
         target = _free(path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".recovered.mcap"))
         with whole(target) as part, part.open("wb") as stream:
             copier = _Copier(stream)
             copier.copy(data)
             if not copier.messages:
                 raise BadInput("holds no complete chunk of messages; nothing to recover", file=path)
-    return Recovered(target, copier.messages, copier.last_ns, not copier.lost, copier.lost)
+    return RecoveryResult(target, copier.messages, copier.last_ns, not copier.lost, copier.lost)
 
 
 def _messages(data: ByteSource) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""A protobuf message type for the variables of a slave, made from their names, types, units and meanings.
+"""A protobuf message type for the variables of an instance, made from their names, types, units and meanings.
 
 ``pose.x`` becomes field ``x`` of a nested message ``pose``; ``ultrasonic[3]`` the third element of a
 repeated field. The unit and meaning stand as a comment at each field, the names of the states of a

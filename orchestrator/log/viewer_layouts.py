@@ -45,7 +45,7 @@ def write_layouts() -> list[Path]:
 
 
 def _path(signal: str) -> dict[str, Any]:
-    """Return a signal as a message path: its slave is the topic."""
+    """Return a signal as a message path: its instance is the topic."""
     return {"value": f"/{signal}", "timestampMethod": "receiveTime", "label": signal}
 
 

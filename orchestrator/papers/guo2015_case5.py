@@ -6,13 +6,13 @@ import numpy as np
 
 from controller_fmu.guo2015.phases import GuoPhase
 from fmus.native.compilers import can_compile
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.papers.result import PRINTED, Row, not_tested
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.in_memory import columns_in_memory
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
-from orchestrator.verdict.measures import Measure, When
+from orchestrator.verdict.measures import Instants, Measure
 
 FASTER_AT = 18.5
 """When the driver speeds up, as printed [s]."""
@@ -31,9 +31,9 @@ class PrintedNumber(NamedTuple):
     measure: Measure
 
 
-STOPPED = When("controller.phase", (int(GuoPhase.STOP),))
-FORWARD = When("controller.phase", (int(GuoPhase.TO_Q4),))
-STRAIGHTENING = When("controller.phase", (int(GuoPhase.STRAIGHTEN),))
+STOPPED = Instants("controller.phase", (int(GuoPhase.STOP),))
+FORWARD = Instants("controller.phase", (int(GuoPhase.TO_Q4),))
+STRAIGHTENING = Instants("controller.phase", (int(GuoPhase.STRAIGHTEN),))
 NUMBERS = (
     PrintedNumber("arrives with heading", "rad", 0.065, 5e-3, Measure("first", "vehicle.pose.heading", STOPPED)),
     PrintedNumber("wheel is straightened at t", "s", 22.0, 0.5, Measure("time", "controller.phase", STRAIGHTENING)),

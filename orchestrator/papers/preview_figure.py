@@ -14,7 +14,7 @@ from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.preview import PreviewErrors
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 
 class Arrays:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array, Indices
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array, Indices
 from orchestrator.report.payload import Arrays
 from orchestrator.verdict.frame import pose_at
 from orchestrator.verdict.geometry import PLANNED, is_planned, place, sample_path

@@ -37,7 +37,7 @@ def _plot(title: str, unit: str, least: float, signals: list[str], checks: list[
 
 
 def _short(name: str) -> str:
-    """Return the name without its slave: an input and the output that feeds it are one curve."""
+    """Return the name without its instance: an input and the output that feeds it are one curve."""
     return name.partition(".")[2]
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box, vehicle_parameters
 from orchestrator.verdict.logged import read_logged_run
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 RANGE_TOLERANCE = 1.0 / 500.0
 """Share of a signal's range that straight lines between the kept instants may be off: under a pixel."""

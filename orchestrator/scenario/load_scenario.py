@@ -92,8 +92,8 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     """Return (file, what it, its bases and ``sets`` say, lowest first, all of that merged but for parameters)."""
     path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
-    slaves = [str(slave) for content, _ in layers for slave in _in(_in(content, "system"), "components")]
-    layers.append((_set_layer(sets, slaves), "--set"))
+    instances = [str(instance) for content, _ in layers for instance in _in(_in(content, "system"), "components")]
+    layers.append((_set_layer(sets, instances), "--set"))
     for content, file in layers:
         _check_keys([key for key in content if key != SETS], file)
     layout = layout_of(layers)
@@ -110,12 +110,12 @@ def _in(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     return section if isinstance(section, Mapping) else {}
 
 
-def _in_declared_units(more: More, slaves: Mapping[str, Any]) -> More:
+def _in_declared_units(more: More, instances: Mapping[str, Any]) -> More:
     """Return parameters of which an FMU declares no unit in those that the system says of them."""
     found = {}
-    for slave, items in more.items():
-        units = _in(_in(slaves, slave), "units")
-        found[slave] = [
+    for instance, items in more.items():
+        units = _in(_in(instances, instance), "units")
+        found[instance] = [
             item._replace(signal=item.signal._replace(unit=unit_symbol(str(units[item.name]))))
             if item.name in units and item.kind is float and item.signal.unit == "1"
             else item
@@ -125,7 +125,7 @@ def _in_declared_units(more: More, slaves: Mapping[str, Any]) -> More:
 
 
 def _with_parameters(scenario: Scenario, more: More) -> Scenario:
-    """Return the scenario with the parameters of further slaves by flat name, checked where the FMU is known."""
+    """Return the scenario with the parameters of further instances by flat name, checked where the FMU is known."""
     if scenario.system is None:
         return scenario
     entries = {}
@@ -180,9 +180,9 @@ def _resolve_files(content: dict[str, Any], path: Path) -> dict[str, Any]:
     if not system:
         return content
     made = dict(system)
-    slaves = _in(system, "components")
-    if slaves:
-        made["components"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
+    instances = _in(system, "components")
+    if instances:
+        made["components"] = {str(name): _entry_beside(item, path.parent) for name, item in instances.items()}
     if isinstance(system.get("ssp"), str):
         file = path.parent / str(system["ssp"])
         if not file.is_file():
@@ -251,10 +251,10 @@ def requirements_of(given: object, folder: Path, file: object = None) -> list[di
     return result
 
 
-def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
-    """Return what ``--set`` says as a layer: a parameter of a slave that is neither of ours goes to the system."""
+def _set_layer(sets: list[str], instances: Iterable[str]) -> dict[str, Any]:
+    """Return what ``--set`` says as a layer: a parameter of an instance that is neither of ours goes to the system."""
     layer: dict[str, Any] = {SETS: sets}
-    others = [slave for slave in slaves if slave not in MODELS]
+    others = [instance for instance in instances if instance not in MODELS]
     for text in sets:
         key, equals, value = text.partition("=")
         if not equals or not key:
@@ -269,8 +269,8 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
         elif key == "car" or (dot and owner == "car"):
             layer["car"] = with_said(layer.get("car"), name, parsed)
         elif dot and owner in others:
-            slave = layer.setdefault("system", {}).setdefault("components", {}).setdefault(owner, {})
-            slave.setdefault("parameters", {})[name] = parsed
+            instance = layer.setdefault("system", {}).setdefault("components", {}).setdefault(owner, {})
+            instance.setdefault("parameters", {})[name] = parsed
         else:
             layer[key] = parsed
     return layer

@@ -13,9 +13,9 @@ TIMED_SPEED = 0.3
 """The controllers count slower driving by distance [m/s]."""
 UNLIMITED = next(float(item.start) for item in variables(MODELS["controller"].params) if item.name == DURATION)
 """Taken for a controller without such a limit."""
-STOPPING = 5.0
+STOPPING_TIME = 5.0
 """Time [s] for the vehicle to stop after the controller has failed."""
-LONGEST = 3600.0
+MAX_STOP_TIME = 3600.0
 """Most [s] for the slowest driver, unless the controller's limit is longer."""
 SPEED_ERROR = "driver.speed_error"
 NAMES = tuple(
@@ -38,4 +38,4 @@ def stop_times(parameters: dict[str, Array], durations: Array) -> Array:
     slowest = slowest * (1.0 + np.minimum(0.0, parameters[SPEED_ERROR]))
     with np.errstate(divide="ignore"):
         times = np.where(slowest > 0.0, durations * np.maximum(1.0, TIMED_SPEED / slowest), durations)
-    return np.minimum(times, np.maximum(LONGEST, durations)) + STOPPING
+    return np.minimum(times, np.maximum(MAX_STOP_TIME, durations)) + STOPPING_TIME

@@ -23,7 +23,7 @@ REQUIREMENT_SETS = Path(__file__).parent.parent / "requirements"
 """Where the shipped sets are."""
 
 
-class Limited(BaseModel):
+class ConditionLimit(BaseModel):
     """What has exactly one of the conditions."""
 
     @property
@@ -38,7 +38,7 @@ class Limited(BaseModel):
         return value
 
 
-class Occasion(Limited):
+class Occasion(ConditionLimit):
     """A condition on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given."""
 
     model_config = ConfigDict(extra="forbid")
@@ -102,7 +102,7 @@ class Window(BaseModel):
         return self
 
 
-class Requirement(Limited):
+class Requirement(ConditionLimit):
     """One requirement on a run; exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given.
 
     A limit is a number in SI units, text with a unit (``3 deg``, ``10 km/h``), or for ``equals``

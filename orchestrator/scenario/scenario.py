@@ -133,15 +133,15 @@ class Scenario(_ScenarioPart):
     overrides: dict[str, str] = {}
     """Changes by ``--set``, as written on the command line."""
 
-    def parameters_for(self, slave: str) -> dict[str, Any]:
+    def parameters_for(self, instance: str) -> dict[str, Any]:
         """Return the parameters that are set in a component."""
-        own = self.parameters_of(slave)
-        return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.unsupported_parameters}
+        own = self.parameters_of(instance)
+        return {name: value for name, value in own.items() if f"{instance}.{name}" not in self.unsupported_parameters}
 
-    def parameters_of(self, slave: str) -> dict[str, Any]:
+    def parameters_of(self, instance: str) -> dict[str, Any]:
         """Return the parameters that the scenario has for a component."""
-        entry = None if self.system is None else self.system.components.get(slave)
-        own = {**getattr(self, slave), **self.texts.get(slave, {})} if slave in MODELS else {}
+        entry = None if self.system is None else self.system.components.get(instance)
+        own = {**getattr(self, instance), **self.texts.get(instance, {})} if instance in MODELS else {}
         return {**(entry.parameters if entry else {}), **own}
 
     def as_written(self) -> dict[str, Any]:

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
+from orchestrator.cosim.algorithm import Interrupt, Termination
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import ImportedFmus
 from orchestrator.session.provenance import start_record
-from orchestrator.session.session import NOBODY, Ran, run_scenario
+from orchestrator.session.session import NOBODY, SimulationResult, run_scenario
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import Meter, Warnings, say
 
@@ -16,7 +16,9 @@ SHOWN_NS = 500_000_000
 """Simulated time between two looks at how far a run is."""
 
 
-def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, realtime: Realtime | None = None) -> Ran:
+def drive(
+    scenario: Scenario, kind: str, log: Path, foreign: ImportedFmus = NOBODY, realtime: Realtime | None = None
+) -> SimulationResult:
     """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be.
 
     ``foreign`` FMUs take the place of ours, or stand beside them. Whoever calls it owns the log's folder.
@@ -51,5 +53,5 @@ class _Clock(Meter):
             self._next_ns = t_ns + SHOWN_NS
             self.at(t_ns / 1e9)
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""

@@ -8,18 +8,18 @@ from fmpy.model_description import ModelDescription
 
 from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.description import ports_of, read_description, variables_of_other_types
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.slave import Ports, Slave
+from orchestrator.cosim.fmu_instance import FmuInstance, Ports
+from orchestrator.cosim.model_description import ports_of, read_description, variables_of_other_types
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.foreign.archive import binary, check_archive, pack
 from orchestrator.foreign.limits import FmuLimits
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.load_scenario import load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Fitting, Foreign, fmu_of, load_fitting, sha256_of
-from orchestrator.session.session import Messages, make_slaves
-from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.session.foreign import Fitting, ImportedFmus, fmu_of, load_bound_scenario, sha256_of
+from orchestrator.session.session import Messages, make_instances
+from orchestrator.system.assemble import ElaboratedSystem, elaborate
 from orchestrator.system.remarks import NEEDED_INPUTS, loops, missing_for_the_verdict, not_fed, unsaid, without_consumer
 from orchestrator.system.signal_matching import Signals, match_signals
 from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
@@ -34,7 +34,7 @@ class FmuReport(NamedTuple):
     about: dict[str, str]
     """What it is: name, version of FMI, platforms, size, hash."""
     place: str
-    """The slave that it would be."""
+    """The instance that it would be."""
     connected: list[str]
     """``input <- signal`` and ``output -> input``."""
     not_fed: list[str]
@@ -61,7 +61,7 @@ class FmuReport(NamedTuple):
 
 
 def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool) -> FmuReport:
-    """Return what the FMU at ``path`` would be as slave ``place`` of a scenario; by its variables if that is empty.
+    """Return what the FMU at ``path`` would be as instance ``place`` of a scenario; by its variables if that is empty.
 
     ``loads``: have it loaded and initialized, in a process of its own. Raises ``BadInput`` if it is no FMU.
     """
@@ -70,31 +70,31 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
     description = read_description(path)
     place = place or likely_place(path, description, scenario)
     fitting = _fitting(path, place, scenario, timeout)
-    slaves = make_slaves(fitting.scenario, None, Messages(), fitting.foreign)
+    instances = make_instances(fitting.scenario, None, Messages(), fitting.foreign)
     try:
-        slave = next(item for item in slaves if item.name == place)
-        system, problems = _try_assembly(fitting.scenario, slaves)
-        problems += _loading(slave) if loads else []
+        instance = next(item for item in instances if item.name == place)
+        system, problems = _try_assembly(fitting.scenario, instances)
+        problems += _loading(instance) if loads else []
         remarks = [] if system is None else loops(system)
         remarks += _omission_text(fitting.unsupported_parameters, place)
         return FmuReport(
             _about(path, names, description),
             place,
-            [] if system is None else _connection_lines(system, slave),
-            [] if system is None else _not_fed(system, slave),
-            _not_understood(system, slave, description),
-            unsaid(slave),
-            _missing(slave, fitting.scenario.stop_condition),
+            [] if system is None else _connection_lines(system, instance),
+            [] if system is None else _not_fed(system, instance),
+            _not_understood(system, instance, description),
+            unsaid(instance),
+            _missing(instance, fitting.scenario.stop_condition),
             problems,
             remarks,
         )
     finally:
-        for item in slaves:
+        for item in instances:
             item.close()
 
 
 def likely_place(path: Path, description: ModelDescription, scenario: str) -> str:
-    """Return the slave that a scenario has for this FMU; else ours whose variables its own are most alike."""
+    """Return the instance that a scenario has for this FMU; else ours whose variables its own are most alike."""
     system = load_system(scenario) if scenario else None
     for place, file in (system.files() if system is not None else {}).items():
         if Path(file).exists() and path.samefile(fmu_of(file)):
@@ -117,9 +117,9 @@ def _likeness(path: Path, description: ModelDescription, model: Model) -> float:
 def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:
     if not scenario and place not in MODELS:
         raise BadInput(f"{place} is neither vehicle nor controller; name a scenario whose system has it", key="--as")
-    found = load_fitting(scenario or "guo2015-case4", [], Foreign({place: path}, limits=FmuLimits(timeout)))
+    found = load_bound_scenario(scenario or "guo2015-case4", [], ImportedFmus({place: path}, limits=FmuLimits(timeout)))
     if place not in found.scenario.places:
-        raise BadInput(f"no slave of {scenario} is called {place}", key="--as")
+        raise BadInput(f"no instance of {scenario} is called {place}", key="--as")
     return found
 
 
@@ -129,24 +129,24 @@ def _omission_text(names: list[str], place: str) -> list[str]:
     return [f"it has no parameters {', '.join(own[:MAX_SHOWN])}{more}: they are left out"] if own else []
 
 
-def _try_assembly(scenario: Scenario, slaves: list[Slave]) -> tuple[Assembled | None, list[str]]:
+def _try_assembly(scenario: Scenario, instances: list[FmuInstance]) -> tuple[ElaboratedSystem | None, list[str]]:
     try:
-        return assemble(scenario, slaves), []
+        return elaborate(scenario, instances), []
     except BadInput as error:
         return None, [str(error)]
 
 
-def _loading(slave: Slave) -> list[str]:
+def _loading(instance: FmuInstance) -> list[str]:
     """Return why it cannot be loaded and initialized here; empty if it can."""
-    if isinstance(slave, InProcessSlave):
+    if isinstance(instance, ModelInstance):
         return []
     try:
-        slave.initialize(60_000_000_000)
-        slave.fetch_outputs()
-        slave.send_inputs()
-        slave.start()
-        slave.step(0, 10_000_000)
-        slave.fetch_outputs()
+        instance.initialize(60_000_000_000)
+        instance.fetch_outputs()
+        instance.send_inputs()
+        instance.start()
+        instance.step(0, 10_000_000)
+        instance.fetch_outputs()
     except RunError as error:
         return [str(error)]
     except (NotRunError, *RESOURCES) as error:
@@ -175,11 +175,11 @@ def _about(path: Path, names: list[str], description: Any) -> dict[str, str]:
     }
 
 
-def _connection_lines(system: Assembled, slave: Slave) -> list[str]:
-    number = system.slaves.index(slave)
+def _connection_lines(system: ElaboratedSystem, instance: FmuInstance) -> list[str]:
+    number = system.instances.index(instance)
     found = []
     for link in system.connections:
-        source, target = system.slaves[link.source], system.slaves[link.target]
+        source, target = system.instances[link.source], system.instances[link.target]
         pairs = zip(link.source_places.tolist(), link.target_places.tolist(), strict=True)
         for given, taken in pairs:
             out, into = f"{source.name}.{source.outputs.names[given]}", f"{target.name}.{target.inputs.names[taken]}"
@@ -191,23 +191,23 @@ def _connection_lines(system: Assembled, slave: Slave) -> list[str]:
     return found
 
 
-def _not_fed(system: Assembled, slave: Slave) -> list[str]:
-    found = not_fed(system.slaves.index(slave), system)
+def _not_fed(system: ElaboratedSystem, instance: FmuInstance) -> list[str]:
+    found = not_fed(system.instances.index(instance), system)
     others = [
         f"{other.name}.{name}{meant}"
-        for number, other in enumerate(system.slaves)
-        if other is not slave and other.name in MODELS
+        for number, other in enumerate(system.instances)
+        if other is not instance and other.name in MODELS
         for name, meant in not_fed(number, system).items()
         if meant or name in NEEDED_INPUTS.get(other.name, ())
     ]
     return [*(f"{name}{meant}" for name, meant in found.items()), *others]
 
 
-def _not_understood(system: Assembled | None, slave: Slave, description: Any) -> list[str]:
-    spare = [] if system is None else without_consumer(system.slaves.index(slave), system)
+def _not_understood(system: ElaboratedSystem | None, instance: FmuInstance, description: Any) -> list[str]:
+    spare = [] if system is None else without_consumer(system.instances.index(instance), system)
     return [*spare, *variables_of_other_types(description, "input", "output", "parameter")]
 
 
-def _missing(slave: Slave, ending: EndCondition) -> list[str]:
-    found = missing_for_the_verdict(slave.name, slave, ending)
+def _missing(instance: FmuInstance, ending: EndCondition) -> list[str]:
+    found = missing_for_the_verdict(instance.name, instance, ending)
     return [f"{name}: {loss}" for name, loss in found.items()]

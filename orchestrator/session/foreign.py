@@ -18,17 +18,17 @@ from orchestrator.session.trust import require_trust
 from orchestrator.text.errors import BadInput
 
 if TYPE_CHECKING:
-    from orchestrator.cosim.slave import Slave
-    from orchestrator.system.assemble import Assembled
+    from orchestrator.cosim.fmu_instance import FmuInstance
+    from orchestrator.system.assemble import ElaboratedSystem
 
 FOREIGN = "foreign"
 """Kind of an FMU that is not one of ours."""
 Files = Mapping[str, Path]
-"""Slave -> FMU of somebody else's."""
+"""FmuInstance -> FMU of somebody else's."""
 LogCallback = Callable[[str, int, str], None]
 
 
-class Foreign(NamedTuple):
+class ImportedFmus(NamedTuple):
     """The FMUs of somebody else's in a run, and how far they are trusted."""
 
     files: Files = MappingProxyType({})
@@ -37,32 +37,32 @@ class Foreign(NamedTuple):
     limits: FmuLimits = FmuLimits()
     """Of each FMU in a process of its own."""
 
-    def with_system(self, system: SystemText | None) -> "Foreign":
+    def with_system(self, system: SystemText | None) -> "ImportedFmus":
         """Return them with those of a system, in whose place these come. Raises ``BadInput``."""
         named = {} if system is None else system.files()
-        of_system = {slave: fmu_of(file) for slave, file in named.items() if slave not in self.files}
+        of_system = {instance: fmu_of(file) for instance, file in named.items() if instance not in self.files}
         return self._replace(files={**of_system, **self.files}) if of_system else self
 
-    def make_instance(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "Slave":
-        """Return the slave ``name`` that runs the FMU at ``path``."""
+    def make_instance(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "FmuInstance":
+        """Return the instance ``name`` that runs the FMU at ``path``."""
         model = MODELS.get(name)
         if self.is_in_process and not is_fmi3(path):
-            from orchestrator.cosim.fmu_slave import FmuSlave
+            from orchestrator.cosim.local_instance import LocalInstance
 
-            return FmuSlave(name, path, parameters, log, model)
-        from orchestrator.foreign.process_slave import ProcessSlave
+            return LocalInstance(name, path, parameters, log, model)
+        from orchestrator.foreign.remote_instance import RemoteInstance
 
-        return ProcessSlave(name, path, parameters, log, model, limits=self.limits)
+        return RemoteInstance(name, path, parameters, log, model, limits=self.limits)
 
 
 def is_fmi3(path: Path) -> bool:
     """Return whether an FMU is FMI 3.0, which has a process of its own in any case."""
-    from orchestrator.cosim.description import read_description
+    from orchestrator.cosim.model_description import read_description
 
     return str(read_description(path).fmiVersion).startswith("3")
 
 
-def foreign_of(arguments: argparse.Namespace) -> Foreign:
+def foreign_of(arguments: argparse.Namespace) -> ImportedFmus:
     """Return the FMUs that were named. Raises ``BadInput`` for one that is not there, or with models in process."""
     named = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
     files = {name: fmu_of(text) for name, text in named.items()}
@@ -71,7 +71,7 @@ def foreign_of(arguments: argparse.Namespace) -> Foreign:
         raise BadInput("--sandbox and --in-process exclude each other")
     if limits.is_sandboxed:
         sandbox_program()
-    return Foreign(files, arguments.in_process, limits)
+    return ImportedFmus(files, arguments.in_process, limits)
 
 
 class Fitting(NamedTuple):
@@ -80,10 +80,10 @@ class Fitting(NamedTuple):
     scenario: Scenario
     unsupported_parameters: list[str]
     """Parameters of the scenario that those do not have."""
-    foreign: Foreign
+    foreign: ImportedFmus
 
 
-def load_fitting(name: str, sets: Iterable[str], foreign: Foreign, origin: Path | None = None) -> Fitting:
+def load_bound_scenario(name: str, sets: Iterable[str], foreign: ImportedFmus, origin: Path | None = None) -> Fitting:
     """Return a scenario with the foreign FMUs of its system, in whose place those in ``foreign`` come.
 
     Parameters of their own can be set like any other. ``origin``: the file that the scenario was made from, whose
@@ -93,11 +93,11 @@ def load_fitting(name: str, sets: Iterable[str], foreign: Foreign, origin: Path 
     system = load_system(name, sets)
     if system is not None and (origin is not None or name not in scenario_names()):
         require_trust(
-            origin or Path(name), [file for slave, file in system.files().items() if slave not in foreign.files]
+            origin or Path(name), [file for instance, file in system.files().items() if instance not in foreign.files]
         )
     foreign = foreign.with_system(system)
-    own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
-    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign)
+    own = {instance: parameters_of(path, instance) for instance, path in foreign.files.items()}
+    return Fitting(*bind_parameters(load_scenario(name, sets, own), own), foreign)
 
 
 def fmu_of(text: str) -> Path:
@@ -119,14 +119,14 @@ def fmu_of(text: str) -> Path:
     return path
 
 
-def parameters_of(path: Path, slave: str) -> list[Variable]:
-    """Return the parameters of an FMU that takes the place of ``slave``. Raises ``BadInput``."""
-    from orchestrator.cosim.description import ports_of, read_description, text_parameters
+def parameters_of(path: Path, instance: str) -> list[Variable]:
+    """Return the parameters of an FMU that takes the place of ``instance``. Raises ``BadInput``."""
+    from orchestrator.cosim.model_description import ports_of, read_description, text_parameters
     from orchestrator.foreign.archive import check_archive
 
     check_archive(path)
     description = read_description(path)
-    return [*ports_of(description, "parameter", MODELS.get(slave), path).variables, *text_parameters(description)]
+    return [*ports_of(description, "parameter", MODELS.get(instance), path).variables, *text_parameters(description)]
 
 
 def connect_advice(place: str, fmu: str, scenario: str = "") -> str:
@@ -140,9 +140,9 @@ def connect_advice(place: str, fmu: str, scenario: str = "") -> str:
     return f"{command} writes its connections, suggested by name, unit and description ({page})"
 
 
-def undriven(system: "Assembled", foreign: Foreign, scenario: Scenario) -> list[str]:
+def undriven(system: "ElaboratedSystem", foreign: ImportedFmus, scenario: Scenario) -> list[str]:
     """Return one line if a third-party vehicle or controller is there and nothing feeds the vehicle's inputs."""
-    names = [slave.name for slave in system.slaves]
+    names = [instance.name for instance in system.instances]
     owner = next((name for name in MODELS if name in foreign.files), "")
     if not owner or not set(MODELS) <= set(names) or "vehicle" in {names[number] for number, _ in system.fed}:
         return []
@@ -150,12 +150,12 @@ def undriven(system: "Assembled", foreign: Foreign, scenario: Scenario) -> list[
     return [f"no output of controller is connected to vehicle, so nothing drives it; {advice}"]
 
 
-def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:
+def bind_parameters(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:
     """Return the scenario that leaves out the parameters that a foreign FMU does not have, and their names."""
     ignored: list[str] = []
-    for slave, items in own.items():
+    for instance, items in own.items():
         known = {item.name for item in items}
-        ignored += [f"{slave}.{name}" for name in scenario.parameters_of(slave) if name not in known]
+        ignored += [f"{instance}.{name}" for name in scenario.parameters_of(instance) if name not in known]
     return scenario.model_copy(update={"unsupported_parameters": ignored}), ignored
 
 

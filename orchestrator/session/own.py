@@ -1,4 +1,4 @@
-"""A model of one's own as a slave: built when it, or what makes FMUs, has changed."""
+"""A model of one's own as an instance: built when it, or what makes FMUs, has changed."""
 
 import hashlib
 from pathlib import Path

@@ -12,9 +12,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.fmu_instance import FmuInstance
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
+from orchestrator.session.foreign import FOREIGN, ImportedFmus, sha256_of
 from orchestrator.text.console import COMMAND
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
@@ -22,12 +22,16 @@ GIT_TIMEOUT = 2.0
 """Wall-clock limit of one call of git [s]; a repository that takes longer is not named."""
 
 
-def provenance(scenario: Scenario, slaves: Iterable[Slave], kind: str, foreign: Foreign) -> dict[str, Any]:
+def provenance(
+    scenario: Scenario, instances: Iterable[FmuInstance], kind: str, foreign: ImportedFmus
+) -> dict[str, Any]:
     """Return scenario, FMUs (name, kind, GUID, path, SHA-256), seed and versions of a run: equal for equal runs."""
     return {
         "scenario": scenario.model_dump(mode="json", exclude={"file"}),
         "fmus": [
-            _fmu_used(slave, FOREIGN if slave.name in foreign.files else kind) for slave in slaves if slave.identity
+            _fmu_used(instance, FOREIGN if instance.name in foreign.files else kind)
+            for instance in instances
+            if instance.identity
         ],
         "seed": scenario.seed,
         "versions": versions(),
@@ -74,10 +78,10 @@ def _git(folder: Path, *words: str) -> str:
     return done.stdout.decode(errors="replace") if done.returncode == 0 else ""
 
 
-def _fmu_used(slave: Slave, kind: str) -> dict[str, str]:
+def _fmu_used(instance: FmuInstance, kind: str) -> dict[str, str]:
     """Return which FMU an instance is; for a model in process, the hash of the sources of all models."""
-    used = {"name": slave.name, "kind": kind, "guid": slave.identity}
-    path: Path | None = getattr(slave, "path", None)
+    used = {"name": instance.name, "kind": kind, "guid": instance.identity}
+    path: Path | None = getattr(instance, "path", None)
     if path is None:
         from orchestrator.cosim.fmu_files import ROOT, sources_hash
 

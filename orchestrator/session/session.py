@@ -1,4 +1,4 @@
-"""One run from a scenario: make the slaves, the master, its observers and faults; run; return the recording."""
+"""One run from a scenario: make the instances, the master, its observers and faults; run; return the recording."""
 
 import math
 import time
@@ -6,22 +6,22 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from orchestrator.cosim.endings import standstill
+from orchestrator.cosim.algorithm import CoSimulation, Interrupt, Observer, Termination, last_exchange
 from orchestrator.cosim.faults import manipulators
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import End, Interrupt, Master, Observer, last_exchange
+from orchestrator.cosim.fmu_instance import FmuInstance
 from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.stop_conditions import standstill
 from orchestrator.log.line import Line
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.cost import cost_text
-from orchestrator.session.foreign import Foreign, undriven
+from orchestrator.session.foreign import ImportedFmus, undriven
 from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
-from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.system.assemble import ElaboratedSystem, elaborate
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
 from orchestrator.text.quantities import NS_PER_SECOND
@@ -33,14 +33,14 @@ PACED = "paced"
 """Instead of a kind of FMU: every exchange waits for its time, so there is nothing to gain by a compiled master."""
 
 
-NOBODY = Foreign()
+NOBODY = ImportedFmus()
 
 
-class Ran(NamedTuple):
+class SimulationResult(NamedTuple):
     """What a run leaves behind."""
 
     recording: Recording
-    end: End
+    end: Termination
     remarks: list[str]
     """What was said of the system before it ran."""
     wall_time: float
@@ -69,32 +69,32 @@ class Messages:
         """Note the time."""
         self.t_ns = t_ns
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""
 
 
-def make_slaves(
-    scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages, foreign: Foreign = NOBODY
-) -> list[Slave]:
-    """Return the slaves of a scenario: FMUs of others, ours from ``files``, or else the models in process."""
+def make_instances(
+    scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages, foreign: ImportedFmus = NOBODY
+) -> list[FmuInstance]:
+    """Return the instances of a scenario: FMUs of others, ours from ``files``, or else the models in process."""
     foreign = foreign.with_system(scenario.system)
-    slaves: list[Slave] = []
+    instances: list[FmuInstance] = []
     for name in scenario.places:
         parameters = scenario.parameters_for(name)
         if name in foreign.files:
-            slaves.append(foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu))
+            instances.append(foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu))
             continue
         model = scenario.models[name]
         parameters = {key: value for key, value in parameters.items() if model.shows(key)}
         if files is None or name not in files:
-            slaves.append(InProcessSlave(name, model, parameters))
+            instances.append(ModelInstance(name, model, parameters))
         else:
             from orchestrator.cosim.fmu_files import fmu_beside
-            from orchestrator.cosim.fmu_slave import FmuSlave
+            from orchestrator.cosim.local_instance import LocalInstance
 
             path = files[name] if model is MODELS[name] else fmu_beside(files[name], model)
-            slaves.append(FmuSlave(name, path, parameters, messages.from_fmu, model))
-    return slaves
+            instances.append(LocalInstance(name, path, parameters, messages.from_fmu, model))
+    return instances
 
 
 def run_scenario(
@@ -106,11 +106,11 @@ def run_scenario(
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
-    foreign: Foreign = NOBODY,
+    foreign: ImportedFmus = NOBODY,
     realtime: Realtime | None = None,
     started: Mapping[str, Any] | None = None,
-) -> Ran:
-    """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through.
+) -> SimulationResult:
+    """Return the recording of one run. Errors of an instance end it as aborted; ``BadInput`` passes through.
 
     ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
     somebody else's, in the place of ours or beside them. ``realtime`` holds the run to the clock on the wall.
@@ -118,11 +118,11 @@ def run_scenario(
     """
     messages = Messages()
     foreign = foreign.with_system(scenario.system)
-    slaves = make_slaves(scenario, files, messages, foreign)
+    instances = make_instances(scenario, files, messages, foreign)
     try:
-        return run_slaves(
+        return run_instances(
             scenario,
-            slaves,
+            instances,
             messages,
             kind=kind,
             log=log,
@@ -134,13 +134,13 @@ def run_scenario(
             started=started,
         )
     finally:
-        for slave in slaves:
-            slave.close()
+        for instance in instances:
+            instance.close()
 
 
-def run_slaves(
+def run_instances(
     scenario: Scenario,
-    slaves: list[Slave],
+    instances: list[FmuInstance],
     messages: Messages,
     *,
     kind: str = "none",
@@ -148,12 +148,12 @@ def run_slaves(
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
-    foreign: Foreign = NOBODY,
+    foreign: ImportedFmus = NOBODY,
     realtime: Realtime | None = None,
     started: Mapping[str, Any] | None = None,
-) -> Ran:
-    """Return the recording of one run of given slaves."""
-    system = assemble(scenario, slaves)
+) -> SimulationResult:
+    """Return the recording of one run of given instances."""
+    system = elaborate(scenario, instances)
     stop_ns = _reachable_stop_ns(system, scenario)
     exchanges = last_exchange(scenario.step_ns, stop_ns) + 1
     said = [*_warnings(system, scenario, exchanges, stop_ns), *undriven(system, foreign, scenario)]
@@ -161,9 +161,9 @@ def run_slaves(
         warn(text)
     master = _master(system, scenario, stop_ns, kind if realtime is None else PACED)
     master.interrupt = interrupt or Interrupt()
-    info = provenance(scenario, system.slaves, kind, foreign) | ({"started": dict(started)} if started else {})
-    recorder = Recorder(system.slaves, exchanges)
-    master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
+    info = provenance(scenario, system.instances, kind, foreign) | ({"started": dict(started)} if started else {})
+    recorder = Recorder(system.instances, exchanges)
+    master.observers += [messages, recorder, ModeChanges(system.instances, scenario.faults, messages.say)]
     file = None if log is None else _begin_log(log, system, scenario, info, master, messages)
     master.observers += observers
     if realtime is not None:
@@ -176,60 +176,66 @@ def run_slaves(
         if file is not None and not recorder.count:
             file.discard()
         raise
-    info |= {
-        "end": {"reason": end.reason, "t_ns": end.t_ns},
-        **({"realtime": realtime.lateness_statistics()} if realtime else {}),
-    }
-    return Ran(recorder.recording(info), end, said, wall_time, [] if file is None else file.lines)
+    info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.report()} if realtime else {})}
+    return SimulationResult(recorder.recording(info), end, said, wall_time, [] if file is None else file.lines)
 
 
 def _begin_log(
-    path: Path, system: Assembled, scenario: Scenario, info: dict[str, Any], master: Master, messages: Messages
+    path: Path,
+    system: ElaboratedSystem,
+    scenario: Scenario,
+    info: dict[str, Any],
+    master: CoSimulation,
+    messages: Messages,
 ) -> "McapLog":
     """Return the log at ``path`` to which the run will be written."""
     from orchestrator.log.mcap_log import McapLog
 
-    file = McapLog(path, system.slaves, scenario, info)
+    file = McapLog(path, system.instances, scenario, info)
     messages.listeners.append(file.say)
     master.observers.append(file)
     return file
 
 
-def _reachable_stop_ns(system: Assembled, scenario: Scenario) -> int:
+def _reachable_stop_ns(system: ElaboratedSystem, scenario: Scenario) -> int:
     """Return the stop time [ns]; the last one that all FMUs of a fixed communication step reach, if there are any."""
     steps = [
-        scenario.step_ns * scenario.decimation.get(item.name, 1) for item in system.slaves if not item.has_variable_step
+        scenario.step_ns * scenario.decimation.get(item.name, 1)
+        for item in system.instances
+        if not item.has_variable_step
     ]
     common = math.lcm(*steps)
     stop_ns = scenario.stop_ns // common * common
     if not stop_ns:
         text = f"{scenario.longest:.9g} s is less than the {common / NS_PER_SECOND:.9g} s"
-        raise BadInput(f"{text} which {_fixed_steps(system)} needs", file=scenario.file, key="stop_time")
+        raise BadInput(f"{text} which {_fixed_step_names(system)} needs", file=scenario.file, key="stop_time")
     return stop_ns
 
 
-def _fixed_steps(system: Assembled) -> str:
-    return ", ".join(item.name for item in system.slaves if not item.has_variable_step)
+def _fixed_step_names(system: ElaboratedSystem) -> str:
+    return ", ".join(item.name for item in system.instances if not item.has_variable_step)
 
 
-def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str]:
+def _early_stop(system: ElaboratedSystem, scenario: Scenario, stop_ns: int) -> list[str]:
     """Return that a run ends before its stop time, if it does."""
     if stop_ns == scenario.stop_ns:
         return []
     text = f"stop_time {scenario.longest:.9g} s is no whole number of steps"
-    return [f"{text}, and the step of {_fixed_steps(system)} is fixed: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"]
+    return [
+        f"{text}, and the step of {_fixed_step_names(system)} is fixed: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"
+    ]
 
 
-def _warnings(system: Assembled, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:
+def _warnings(system: ElaboratedSystem, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:
     """Return what is allowed in a system but hardly meant, or costly."""
-    cost = cost_text(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
+    cost = cost_text(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.instances))
     ending = scenario.stop_condition if scenario.task != "open_loop" else None
     ignored = scenario.system.ignored if scenario.system is not None else []
     early = _early_stop(system, scenario, stop_ns)
     return [*remarks(system, ending, ignored), *early, *implausible(scenario), *([cost] if cost else [])]
 
 
-def _drive(master: Master, messages: Messages) -> tuple[End, float]:
+def _drive(master: CoSimulation, messages: Messages) -> tuple[Termination, float]:
     """Run; return how it ended, and the time from the first exchange to the closed log [s]."""
     end = _guard(messages, master.initialize)
     begun = time.perf_counter()
@@ -242,30 +248,30 @@ def _drive(master: Master, messages: Messages) -> tuple[End, float]:
     return end, wall_time
 
 
-def _master(system: Assembled, scenario: Scenario, stop_ns: int, kind: str) -> Master:
+def _master(system: ElaboratedSystem, scenario: Scenario, stop_ns: int, kind: str) -> CoSimulation:
     """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain.
 
     Faults and what ends the run are in place.
     """
-    make: type[Master] = Master
+    make: type[CoSimulation] = CoSimulation
     if kind == "native":
         from orchestrator.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
-    master = make(system.slaves, scenario.step_ns, stop_ns, scenario.decimation, system.connections)
+    master = make(system.instances, scenario.step_ns, stop_ns, scenario.decimation, system.connections)
     master.manipulators += manipulators(scenario.faults, master, scenario.seed, scenario.file)
-    ending = standstill(scenario.stop_condition, system.slaves) if scenario.task != "open_loop" else None
+    ending = standstill(scenario.stop_condition, system.instances) if scenario.task != "open_loop" else None
     if ending is not None:
         master.endings.append(ending)
     return master
 
 
-def _guard(messages: Messages, act: Callable[[], End | None]) -> End | None:
+def _guard(messages: Messages, act: Callable[[], Termination | None]) -> Termination | None:
     """Return what ``act`` returns, or how the run ended if it cannot go on."""
     try:
         return act()
     except RunError as error:
         messages.say(messages.t_ns, ERROR, "run", str(error))
-        return End(f"error: {error}", messages.t_ns)
+        return Termination(f"error: {error}", messages.t_ns)
     except KeyboardInterrupt:
-        return End("interrupted", messages.t_ns)
+        return Termination("interrupted", messages.t_ns)

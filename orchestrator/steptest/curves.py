@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from fmus.files import write_whole
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.verdict.judge import Check

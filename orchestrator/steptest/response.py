@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 
 class Response(NamedTuple):
@@ -64,7 +64,7 @@ def _crossing(response: Response, share: float) -> float:
     return float(t[row - 1] + part * (t[row] - t[row - 1]))
 
 
-class Measured(NamedTuple):
+class ResponseMeasure(NamedTuple):
     """A number of a response: how it is found, its unit (empty: the signal's), what it is."""
 
     of: Callable[[Response], float]
@@ -73,9 +73,9 @@ class Measured(NamedTuple):
 
 
 RESPONSES = {
-    "rise_time": Measured(rise_time, "s", "from 10 % to 90 % of the way"),
-    "settling_time": Measured(settling_time, "s", "until it stays in the band around the goal"),
-    "overshoot": Measured(overshoot, "1", "beyond the goal, share of the way"),
-    "steady_state_error": Measured(steady_state_error, "", "from the goal, mean of the last tenth of the time"),
+    "rise_time": ResponseMeasure(rise_time, "s", "from 10 % to 90 % of the way"),
+    "settling_time": ResponseMeasure(settling_time, "s", "until it stays in the band around the goal"),
+    "overshoot": ResponseMeasure(overshoot, "1", "beyond the goal, share of the way"),
+    "steady_state_error": ResponseMeasure(steady_state_error, "", "from the goal, mean of the last tenth of the time"),
 }
 """Word -> number of a step response."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import ImportedFmus
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.step_test import StepTest
@@ -13,7 +13,7 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check
 
 
-def run_step_test(test: StepTest, kind: str, foreign: Foreign = NOBODY) -> tuple[Recording, list[Check]]:
+def run_step_test(test: StepTest, kind: str, foreign: ImportedFmus = NOBODY) -> tuple[Recording, list[Check]]:
     """Return the recording of a test and a check for each expectation. Raises ``BadInput``, ``RunError``."""
     recording = drive(test, kind, foreign)
     checks = judge_step_test(test, recording)

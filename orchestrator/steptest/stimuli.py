@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from modelkit.variables import Variable
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, format_value, suggestion
 from orchestrator.text.quantities import FACTORS, NS_PER_SECOND, number, scalar, unit_symbol

@@ -9,31 +9,31 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array, Indices
+from orchestrator.cosim.fmu_instance import Array, Indices
 from orchestrator.verdict.truth import Bools
 
 
-class Decided(NamedTuple):
+class TemporalResult(NamedTuple):
     """The margin of a formula, and the row that decided."""
 
     margin: float
     row: int
 
 
-def always(margins: Array, rows: Bools) -> Decided | None:
+def always(margins: Array, rows: Bools) -> TemporalResult | None:
     """Return the least margin in ``rows``; NaN is the worst."""
     if not rows.any():
         return None
     row = int(np.argmin(np.where(rows, _without_nan(margins), np.inf)))
-    return Decided(float(margins[row]), row)
+    return TemporalResult(float(margins[row]), row)
 
 
-def eventually(margins: Array, starts: Indices, length: int) -> Decided | None:
+def eventually(margins: Array, starts: Indices, length: int) -> TemporalResult | None:
     """Return, of the best margins in the ``length`` rows from each of ``starts`` on, the least."""
     return _worst([_best(margins, int(start), length) for start in starts])
 
 
-def until(holds: Array, ends: Array, starts: Indices, length: int) -> Decided | None:
+def until(holds: Array, ends: Array, starts: Indices, length: int) -> TemporalResult | None:
     """Return the margin of "``holds`` until ``ends``", which has to come within ``length`` rows of each start."""
     return _worst([_until(_without_nan(holds), _without_nan(ends), int(start), length) for start in starts])
 
@@ -44,21 +44,21 @@ def rises(margins: Array) -> Indices:
     return np.flatnonzero(met & ~np.concatenate(([False], met[:-1]))).astype(np.intp)
 
 
-def _best(margins: Array, start: int, length: int) -> Decided:
+def _best(margins: Array, start: int, length: int) -> TemporalResult:
     window = _without_nan(margins[start : start + length])
     row = int(np.argmax(window))
-    return Decided(float(window[row]), start + row)
+    return TemporalResult(float(window[row]), start + row)
 
 
-def _until(holds: Array, ends: Array, start: int, length: int) -> Decided:
+def _until(holds: Array, ends: Array, start: int, length: int) -> TemporalResult:
     window = slice(start, start + length)
     before = np.minimum.accumulate(np.concatenate(([np.inf], holds[window])))[:-1]
     both = np.minimum(ends[window], before)
     row = int(np.argmax(both))
-    return Decided(float(both[row]), start + row)
+    return TemporalResult(float(both[row]), start + row)
 
 
-def _worst(found: list[Decided]) -> Decided | None:
+def _worst(found: list[TemporalResult]) -> TemporalResult | None:
     return min(found, key=lambda item: item.margin) if found else None
 
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from orchestrator.comparison.compare import compare
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.cosim.fmu_instance import Array, Indices
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array, Indices
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.steptest.expectation import Expectation, Limit, Number, Reaction
 from orchestrator.steptest.response import RESPONSES, Response
 from orchestrator.steptest.step_test import StepTest
-from orchestrator.steptest.temporal import Decided, always, eventually, rises, until
+from orchestrator.steptest.temporal import TemporalResult, always, eventually, rises, until
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import number, scalar
 from orchestrator.verdict.conditions import CONDITIONS
@@ -24,7 +24,7 @@ from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.truth import Bools
 
 
-class Found(NamedTuple):
+class LimitMargins(NamedTuple):
     """A limit as numbers: signal, limit in its unit, margins at all instants."""
 
     signal: str
@@ -116,7 +116,7 @@ class _Judge:
         t = float(self._recording.t[decided.row])
         return self._check(limit, found, Outcome(value, decided.margin, t, decided.margin >= 0.0, note))
 
-    def _decide(self, found: Found) -> Decided | None:
+    def _decide(self, found: LimitMargins) -> TemporalResult | None:
         item, count = self._item, len(self._recording.t)
         starts = self._starts()
         length = count if item.within is None else round(self._seconds(item.within) / self._step) + 1
@@ -142,10 +142,10 @@ class _Judge:
         last = math.inf if item.to is None else self._seconds(item.to)
         return np.asarray((t >= first - 1e-9) & (t <= last + 1e-9))
 
-    def _measure(self, limit: Limit) -> Found:
+    def _measure(self, limit: Limit) -> LimitMargins:
         name = self._name(limit.signal or self._item.signal)
         value = self._value(limit.value, name)
-        return Found(name, value, CONDITIONS[limit.condition].margin(self._recording.signals[name], value))
+        return LimitMargins(name, value, CONDITIONS[limit.condition].margin(self._recording.signals[name], value))
 
     def _response(self, asked: Reaction) -> Check:
         name = self._name(self._item.signal)
@@ -161,11 +161,11 @@ class _Judge:
         if len(values) and np.isfinite(values).all():
             value = measured.of(Response(t[rows], values, self._value(asked.to, name), band))
         margin = float(CONDITIONS[asked.limit.condition].margin(np.array([value]), limit)[0])
-        found = Found(name, limit, np.array([margin]))
+        found = LimitMargins(name, limit, np.array([margin]))
         outcome = Outcome(value, margin, self._seconds(asked.at), margin >= 0.0, unit=unit)
         return self._check(asked.limit, found, outcome)
 
-    def _check(self, limit: Limit, found: Found, outcome: Outcome) -> Check:
+    def _check(self, limit: Limit, found: LimitMargins, outcome: Outcome) -> Check:
         item, states = self._item, self._recording.states(found.signal)
         named = states.get(int(found.limit), "") if states and limit.condition == "equals" else ""
         return Check(

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 
 MAX_HEAD, HEAD_TIMEOUT, MAX_CONNECTIONS = 1 << 14, 5.0, 16
 """Bytes of a request [bytes], how long it may take [s], and how many viewers at a time."""
-PIECE = 1 << 16
+READ_BYTES = 1 << 16
 VIEWERS = ("https://app.foxglove.dev", "https://studio.foxglove.dev")
 """Pages that may connect, beside those of this machine."""
 LOCAL = ("127.0.0.1", "localhost", "::1")
@@ -111,7 +111,7 @@ def _head_of(outer: socket.socket) -> bytes:
     outer.settimeout(HEAD_TIMEOUT)
     head = b""
     while b"\r\n\r\n" not in head:
-        part = outer.recv(PIECE)
+        part = outer.recv(READ_BYTES)
         head += part
         if not part or len(head) > MAX_HEAD:
             return b""
@@ -122,7 +122,7 @@ def _head_of(outer: socket.socket) -> bytes:
 def _pass_on(source: socket.socket, target: socket.socket) -> None:
     """Hand over what comes until there is nothing more, and say so."""
     with suppress(OSError):
-        while part := source.recv(PIECE):
+        while part := source.recv(READ_BYTES):
             target.sendall(part)
     with suppress(OSError):
         target.shutdown(socket.SHUT_WR)

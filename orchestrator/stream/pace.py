@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.cosim.master import End
+from orchestrator.cosim.algorithm import Termination
 
 LATE_THRESHOLD = 1e-3
 """An exchange later than this [s] counts as late."""
 
 
-class Pace:
+class RealTimeClock:
     """Observer that lets no exchange be seen before its time has come, and notes how late each was."""
 
     def __init__(
@@ -32,7 +32,7 @@ class Pace:
             self._sleep(early)
         self._late.append(max(0.0, self._clock() - self._begun - t_ns / 1e9))
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""
 
     def lateness_statistics(self) -> dict[str, Any]:

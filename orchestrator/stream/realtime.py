@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from orchestrator.cosim.master import End, Master
+from orchestrator.cosim.algorithm import CoSimulation, Termination
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.stream.pace import Pace
+from orchestrator.stream.pace import RealTimeClock
 from orchestrator.stream.tuning import Tuning
 
 Say = Callable[[int, int, str, str], None]
@@ -17,14 +17,14 @@ class Realtime:
     def __init__(self, port: int | None = None, announce: Callable[[str], None] = lambda text: None) -> None:
         self._port = port
         self._announce = announce
-        self._pace = Pace()
+        self._pace = RealTimeClock()
         self._tuning: Tuning | None = None
         self.address = ""
         """Where the run is shown."""
         self.token = ""
         """What a viewer needs to change parameters."""
 
-    def join(self, master: Master, scenario: Scenario, say: Say, listeners: list[Say]) -> None:
+    def join(self, master: CoSimulation, scenario: Scenario, say: Say, listeners: list[Say]) -> None:
         """Take part in a run: first of all wait, last of all show. Raises ``BadInput`` if the port cannot be opened."""
         master.observers.insert(0, self._pace)
         if self._port is None:
@@ -32,10 +32,10 @@ class Realtime:
         from orchestrator.log.mcap_log import McapLog
         from orchestrator.stream.server import TOKEN, LiveChannels
 
-        self._tuning = Tuning(master.slaves, scenario.models, say)
+        self._tuning = Tuning(master.instances, scenario.models, say)
         live = LiveChannels(self._port, scenario.title or scenario.name, self._tuning)
         self.address, self.token = live.address, live.token
-        shown = McapLog(live, master.slaves, scenario, {})
+        shown = McapLog(live, master.instances, scenario, {})
         listeners.append(shown.say)
         master.observers += [self._tuning, shown, _Ticks(live.at)]
         self._announce(
@@ -43,7 +43,7 @@ class Realtime:
             f"set {TOKEN} to {self.token} first"
         )
 
-    def lateness_statistics(self) -> dict[str, Any]:
+    def report(self) -> dict[str, Any]:
         """Return how late the run was, and what was changed meanwhile."""
         return {**self._pace.lateness_statistics(), "tuned": self._tuning.told if self._tuning else []}
 
@@ -54,5 +54,5 @@ class _Ticks:
     def __init__(self, tell: Callable[[int], None]) -> None:
         self.on_communication_point = tell
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""

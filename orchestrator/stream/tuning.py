@@ -7,14 +7,14 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 from modelkit.model import Model
 from modelkit.signal import Role
 from modelkit.variables import Variable, limits_of, variables
-from orchestrator.cosim.master import End
+from orchestrator.cosim.algorithm import Termination
+from orchestrator.cosim.fmu_instance import FmuInstance
 from orchestrator.cosim.mode_changes import INFO
-from orchestrator.cosim.slave import Slave
 
 
 @runtime_checkable
 class TakesValues(Protocol):
-    """A slave whose tunable parameters can be changed between two steps."""
+    """An instance whose tunable parameters can be changed between two steps."""
 
     def tune(self, name: str, value: float) -> None:
         """Give a parameter another value. Raises ``RunError`` if the model refuses."""
@@ -31,26 +31,26 @@ class Tuning:
     """Observer that gives the models what was asked for since the last exchange, and says so in the log."""
 
     def __init__(
-        self, slaves: Sequence[Slave], models: Mapping[str, Model], say: Callable[[int, int, str, str], None]
+        self, instances: Sequence[FmuInstance], models: Mapping[str, Model], say: Callable[[int, int, str, str], None]
     ) -> None:
         self._say = say
         self._wishes: deque[_Wish] = deque()
-        self._known: dict[str, tuple[Slave, Variable]] = {}
+        self._known: dict[str, tuple[FmuInstance, Variable]] = {}
         self.told: list[dict[str, Any]] = []
         """What was changed, and when."""
-        for slave in slaves:
-            model = models.get(slave.name)
-            if model is not None and isinstance(slave, TakesValues):
-                shown = [item for item in variables(model.params) if item.name in slave.parameters.index]
+        for instance in instances:
+            model = models.get(instance.name)
+            if model is not None and isinstance(instance, TakesValues):
+                shown = [item for item in variables(model.params) if item.name in instance.parameters.index]
                 tunable = [item for item in shown if Role.TUNABLE in item.roles]
-                self._known |= {f"{slave.name}.{item.name}": (slave, item) for item in tunable}
+                self._known |= {f"{instance.name}.{item.name}": (instance, item) for item in tunable}
 
     def values(self) -> dict[str, float | int | bool]:
         """Return all that can be changed with its value now, or as it will be at the next exchange."""
         asked = {wish.name: wish.value for wish in list(self._wishes)}
         return {
-            name: item.kind(asked.get(name, slave.parameters.values[slave.parameters.index[item.name]]))
-            for name, (slave, item) in self._known.items()
+            name: item.kind(asked.get(name, instance.parameters.values[instance.parameters.index[item.name]]))
+            for name, (instance, item) in self._known.items()
         }
 
     def ask(self, name: str, value: object, by: str) -> str:
@@ -71,12 +71,12 @@ class Tuning:
         """Change what was asked for; it holds from the step after this exchange on."""
         while self._wishes:
             wish = self._wishes.popleft()
-            slave, item = self._known[wish.name]
-            assert isinstance(slave, TakesValues)
-            slave.tune(item.name, wish.value)
-            slave.parameters.values[slave.parameters.index[item.name]] = wish.value
+            instance, item = self._known[wish.name]
+            assert isinstance(instance, TakesValues)
+            instance.tune(item.name, wish.value)
+            instance.parameters.values[instance.parameters.index[item.name]] = wish.value
             self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value, "by": wish.by})
             self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on, set by {wish.by}")
 
-    def on_terminate(self, end: End) -> None:
+    def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""

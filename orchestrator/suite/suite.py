@@ -11,13 +11,13 @@ from threading import Lock
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.results import LOG, PAGE, is_shown, write_page, write_summary
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Files, Foreign, load_fitting
+from orchestrator.session.foreign import Files, ImportedFmus, load_bound_scenario
 from orchestrator.session.provenance import versions
 from orchestrator.session.session import run_scenario
 from orchestrator.steptest.curves import write_curves
@@ -77,13 +77,13 @@ class SuiteResult(NamedTuple):
         )
 
 
-class Bench(NamedTuple):
+class SuiteConfig(NamedTuple):
     """What all scenarios of a test are run with."""
 
     files: Files
-    """Slave name -> FMU of ours; those that lack run in process."""
+    """FmuInstance name -> FMU of ours; those that lack run in process."""
     kind: str
-    foreign: Foreign
+    foreign: ImportedFmus
     """FMUs of somebody else's in their place: they need not have all parameters."""
     requirements: list[tuple[str, list[Requirement]]]
     """(file, its requirements), judged besides the scenario's own limits."""
@@ -106,7 +106,7 @@ def select_scenarios(names: list[str]) -> list[str]:
     return found
 
 
-def run_tests(names: list[str], sets: list[str], bench: Bench, out: Path, jobs: int = 1) -> Iterator[SuiteResult]:
+def run_tests(names: list[str], sets: list[str], bench: SuiteConfig, out: Path, jobs: int = 1) -> Iterator[SuiteResult]:
     """Yield the verdicts of scenarios in their order, ``jobs`` of them at a time; none begins after an interrupt."""
     taken: set[str] = set()
     if jobs == 1:
@@ -133,7 +133,7 @@ def _claim(name: str, taken: set[str], what: str, file: object) -> None:
         taken.add(name)
 
 
-def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str] | None = None) -> SuiteResult:
+def run_test(name: str, sets: list[str], bench: SuiteConfig, out: Path, taken: set[str] | None = None) -> SuiteResult:
     """Run one scenario, judge it, and keep log, summary and replay page in ``out``/its name.
 
     Whatever is wrong with it or with an FMU is an error of this scenario alone; so is a name already ``taken``.
@@ -144,7 +144,7 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
     try:
         if is_step_test(name):
             return _step_tested(load_step_test(Path(name)), sets, bench, out, taken)
-        scenario, ignored, foreign = load_fitting(name, sets, bench.foreign)
+        scenario, ignored, foreign = load_bound_scenario(name, sets, bench.foreign)
         bench = bench._replace(foreign=foreign)
         _claim(scenario.name, taken, "scenario of this test", name)
         return _evaluate(scenario, ignored, bench, out / scenario.name)
@@ -159,7 +159,7 @@ def _nameable(text: str) -> str:
     return UNNAMEABLE.sub("-", text).lstrip(".-")[:MOST_LETTERS] or "unnamed"
 
 
-def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> SuiteResult:
+def _evaluate(scenario: Scenario, ignored: list[str], bench: SuiteConfig, folder: Path) -> SuiteResult:
     with lock_folder(folder):
         ran = run_scenario(
             scenario,
@@ -183,7 +183,7 @@ def _evaluate(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path
     return SuiteResult(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
 
 
-def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: set[str]) -> SuiteResult:
+def _step_tested(test: StepTest, sets: list[str], bench: SuiteConfig, out: Path, taken: set[str]) -> SuiteResult:
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
         raise BadInput(
@@ -220,7 +220,7 @@ def fmus_of(tested: SuiteResult) -> dict[str, str]:
     return {item.name: f"{item.path}, SHA-256 {item.sha256}" for item in used}
 
 
-def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> list[Check]:
+def _extra_checks(bench: SuiteConfig, recording: Recording, scenario: Scenario) -> list[Check]:
     facts = facts_of(recording, scenario)
     return [check for file, items in bench.requirements for check in judge(items, recording, facts, file)]
 

@@ -11,11 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compile_rows, signals_to_read
+from fmus.compiled_batch import (
+    FaultInputs,
+    RecordedSignal,
+    Rows,
+    SampleTime,
+    StopCondition,
+    compile_rows,
+    signals_to_read,
+)
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
 from modelkit.model import Model
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
@@ -92,9 +100,9 @@ def explain(job: Job, chunk: Chunk) -> str:
 def _compile_rows(
     models: tuple[tuple[str, Model], ...],
     measures: tuple[Measure, ...],
-    faults: tuple[Disturbed, ...],
+    faults: tuple[FaultInputs, ...],
     choices: Choices | None,
-    ending: Ending,
+    ending: StopCondition,
 ) -> Rows:
     whole, kept = dict(models), [_signal_to_record(item) for item in measures]
     complete = compile_rows(whole, ending, kept, faults)
@@ -105,10 +113,10 @@ def _compile_rows(
     return StudyRows(complete, compile_rows(whole, ending, kept, faults, code))
 
 
-def _ending(scenario: Scenario) -> Ending:
+def _ending(scenario: Scenario) -> StopCondition:
     end = scenario.stop_condition
-    return Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
+    return StopCondition(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
 
 
-def _signal_to_record(measure: Measure) -> Kept:
-    return Kept(measure.how, measure.signal, None if measure.when is None else When(*measure.when))
+def _signal_to_record(measure: Measure) -> RecordedSignal:
+    return RecordedSignal(measure.how, measure.signal, None if measure.when is None else SampleTime(*measure.when))

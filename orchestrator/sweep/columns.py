@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.signal import Signal
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import PENETRATION
 from orchestrator.sweep.job import Chunk, Job, truths
@@ -17,7 +17,7 @@ from orchestrator.sweep.study.theirs import signals_of
 from orchestrator.sweep.verdict import RESULTS, judge, limit_value, things, values_in
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.numbers import Metric
 from orchestrator.verdict.truth import Bools
 
 WITHIN = "within {}"
@@ -96,7 +96,7 @@ def _is_within(
     return good
 
 
-def _number(name: str, item: Number) -> TableColumn:
+def _number(name: str, item: Metric) -> TableColumn:
     return TableColumn(name, int if name in COUNTS else float, Signal(item.unit, item.text))
 
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.master import Interrupt
 from orchestrator.sweep.dask_cluster import PrivateCluster
 from orchestrator.sweep.engine import CHUNKS_PER_WORKER, POLL_INTERVAL, ChunkTask, Result, cores, rows_or_reason
 from orchestrator.sweep.job import Chunk, Job

@@ -8,16 +8,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.compiled_batch import FAULT_NUMBERS, Disturbed
+from fmus.compiled_batch import FAULT_NUMBERS, FaultInputs
 from modelkit.variables import Variable
+from orchestrator.cosim.algorithm import CoSimulation
 from orchestrator.cosim.faults import SEED_STRIDE, receivers
-from orchestrator.cosim.master import Master
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.session import Messages, make_slaves
+from orchestrator.session.session import Messages, make_instances
 from orchestrator.sweep.job import Chunk, Job
-from orchestrator.system.assemble import assemble
+from orchestrator.system.assemble import elaborate
 from orchestrator.text.quantities import NS_PER_SECOND, number, scalar
 
 SYSTEM = "system"
@@ -32,7 +32,7 @@ class Receiver(NamedTuple):
 
     fault: int
     """Its number, from 0."""
-    inputs: Disturbed
+    inputs: FaultInputs
     first: Variable
     """The first of them, by which its numbers are read."""
 
@@ -50,11 +50,15 @@ def fault_receivers(scenario: Scenario) -> tuple[Receiver, ...]:
 def _receivers(faults: str, chosen: tuple[tuple[str, Any], ...], file: str) -> tuple[Receiver, ...]:
     given = [Fault(**item) for item in json.loads(faults)]
     scenario = Scenario(name="faults", faults=given, file=file, controller=dict(chosen))
-    system = assemble(scenario, slaves := make_slaves(scenario, None, Messages()))
-    master = Master(system.slaves, 1, 1, {}, system.connections)
+    system = elaborate(scenario, instances := make_instances(scenario, None, Messages()))
+    master = CoSimulation(system.instances, 1, 1, {}, system.connections)
     return tuple(
-        Receiver(count, Disturbed(given[count].kind, slave, tuple(places)), slaves[slave].inputs.variables[places[0]])
-        for count, slave, places in receivers(given, master, file)
+        Receiver(
+            count,
+            FaultInputs(given[count].kind, instance, tuple(places)),
+            instances[instance].inputs.variables[places[0]],
+        )
+        for count, instance, places in receivers(given, master, file)
     )
 
 

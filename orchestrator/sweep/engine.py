@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Protocol
 
-from orchestrator.cosim.master import Interrupt
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.algorithm import Interrupt
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import RESOURCES, NotRunError
 from orchestrator.text.failures import reason_of

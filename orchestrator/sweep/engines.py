@@ -27,8 +27,8 @@ from pathlib import Path
 from fmus.files import live_in, own_room
 from fmus.installation import missing_package
 from fmus.native.compilers import can_compile
-from orchestrator.cosim.master import Interrupt
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.algorithm import Interrupt
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch, run_recorded
 from orchestrator.sweep.engine import (

@@ -46,7 +46,7 @@ class Field(NamedTuple):
 
     key: str
     owner: str
-    """A slave's name, ``scenario``, ``target``, ``slot`` or ``faults``."""
+    """An instance's name, ``scenario``, ``target``, ``slot`` or ``faults``."""
     name: str
     place: int
     """Place among the parameters of the model, or FMU, or number of the fault from 0."""
@@ -71,10 +71,10 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
     known = [
         *SCENARIO_FIELDS,
         *TRUE_FIELDS,
-        *(f"{slave}.{item.name}" for slave, items in known_parameters.items() for item in items),
+        *(f"{instance}.{item.name}" for instance, items in known_parameters.items() for item in items),
     ]
     hint = suggestion(key, known) or "; known are " + ", ".join(
-        (*(f"{slave}.*" for slave in known_parameters), *SCENARIO_FIELDS)
+        (*(f"{instance}.*" for instance in known_parameters), *SCENARIO_FIELDS)
     )
     raise BadInput(f"unknown{hint}", file=file, key=key)
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.sweep.batch import compile_models
 from orchestrator.sweep.columns import fill_columns
 from orchestrator.sweep.engine import all_rows

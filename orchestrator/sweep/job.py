@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.pace import DURATION, NAMES, UNLIMITED, stop_times
 from orchestrator.scenario.scenario import Scenario, Target
@@ -19,8 +19,8 @@ from orchestrator.sweep.rows import measures_for
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
 from orchestrator.text.quantities import NS_PER_SECOND
-from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.truth import TRUE_KEYS, Truth, join_truths, truth_of
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.truth import TRUE_KEYS, GroundTruth, join_truths, truth_of
 
 Times = NDArray[np.int64]
 
@@ -99,14 +99,16 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
 
 
 def _theirs(data: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return slave -> where a scenario, as plain data, has the parameters of its FMU, for those that are not ours."""
+    """Return instance -> where a scenario, as plain data, has the parameters of its FMU, for third-party ones."""
     if data["system"] is None:
         return {}
-    slaves = {
+    instances = {
         name: {**item, "parameters": dict(item["parameters"])} for name, item in data["system"]["components"].items()
     }
-    data["system"] = {**data["system"], "components": slaves}
-    return {name: data[name] if name in MODELS else item["parameters"] for name, item in slaves.items() if item["file"]}
+    data["system"] = {**data["system"], "components": instances}
+    return {
+        name: data[name] if name in MODELS else item["parameters"] for name, item in instances.items() if item["file"]
+    }
 
 
 def _controller_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
@@ -122,7 +124,7 @@ def _controller_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
     ]
 
 
-def truths(job: Job, chunk: Chunk) -> Truth:
+def truths(job: Job, chunk: Chunk) -> GroundTruth:
     """Return what is true in each run of ``chunk``."""
     scenario = Scenario(**job.scenario)
     vehicle = {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)} | scenario.vehicle
@@ -215,7 +217,7 @@ def _places_by_name(scenario: dict[str, Any]) -> dict[str, dict[str, int]]:
 
 
 def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:
-    return Measure(how, signal, None if when is None else When(when[0], tuple(when[1])))
+    return Measure(how, signal, None if when is None else Instants(when[0], tuple(when[1])))
 
 
 def _controller_target(controller: dict[str, Any]) -> dict[str, float]:

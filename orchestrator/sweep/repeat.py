@@ -10,8 +10,8 @@ from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.report.results import LOG, is_shown, write_page, write_picture, write_summary
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
-from orchestrator.session.foreign import Foreign, load_fitting
-from orchestrator.session.session import Ran
+from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
+from orchestrator.session.session import SimulationResult
 from orchestrator.sweep.job import chunk_scenario
 from orchestrator.sweep.table import UNREADABLE, Table
 from orchestrator.text.errors import BadInput
@@ -24,11 +24,11 @@ NEEDED = ("outcome", "reason", "duration", "manoeuvres", "max_speed", *(f"final.
 """Columns of a table with which a run is compared."""
 
 
-class Repeated(NamedTuple):
+class ReplayedRow(NamedTuple):
     """A row as it ran this time."""
 
     scenario: Scenario
-    ran: Ran
+    ran: SimulationResult
     summary: Summary
     different: list[str]
     """Names of the numbers that are not the row's to the last bit."""
@@ -41,7 +41,7 @@ def folder_of_row(table: Path, number: int) -> Path:
     return table.parent / f"row-{number}"
 
 
-def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> Repeated:
+def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> ReplayedRow:
     """Run row ``number`` again, with its results in ``out``. Raises ``BadInput`` if there is none."""
     with lock_folder(out):
         scenario = write_scenario(table, number, out / "scenario.yaml")
@@ -52,7 +52,7 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
             write_picture(out, ran.recording, summary, scenario)
             write_page(out, ran.recording, summary, ran.lines)
     different = _differences(table.row(number), summary.as_json())
-    return Repeated(scenario, ran, summary, different, table.about["sources"] == sources_hash())
+    return ReplayedRow(scenario, ran, summary, different, table.about["sources"] == sources_hash())
 
 
 def write_scenario(table: Table, number: int, file: Path) -> Scenario:
@@ -72,7 +72,7 @@ def write_scenario(table: Table, number: int, file: Path) -> Scenario:
         content["system"] = scenario.system.model_dump(mode="python", by_alias=True, exclude_defaults=True)
     name = f"{table.about['study']['name']}-row-{number}"
     write_whole(file, yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True))
-    return load_fitting(str(file), [], Foreign(), table.path).scenario
+    return load_bound_scenario(str(file), [], ImportedFmus(), table.path).scenario
 
 
 def _differences(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:

@@ -9,8 +9,8 @@ from typing import get_args
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import PENETRATION, Scenario
@@ -18,8 +18,8 @@ from orchestrator.sweep.study.theirs import files_of, signals_of
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import CHART, judge
-from orchestrator.verdict.measures import Measure, When, measure_recording
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, Facts, of_whole_run
+from orchestrator.verdict.measures import Instants, Measure, measure_recording
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, RunFacts, of_whole_run
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""
@@ -75,13 +75,13 @@ def measure_of(limit: Requirement) -> Measure | None:
     return None if during is None else Measure(worst, limit.signal, during)
 
 
-def _phases(window: Window) -> When | None:
+def _phases(window: Window) -> Instants | None:
     """Return the instants of a window that is made of phases alone; None for any other."""
     if window != Window(phase=window.phase, if_never=window.if_never):
         return None
     numbers = {name: number for number, name in states_of(CHART).items()}
     words = [state_word(phase) for phase in window.phase]
-    return When(CHART, tuple(numbers[word] for word in words)) if set(words) <= numbers.keys() else None
+    return Instants(CHART, tuple(numbers[word] for word in words)) if set(words) <= numbers.keys() else None
 
 
 def measures_of(limit: Requirement) -> list[Measure]:
@@ -140,6 +140,6 @@ def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) ->
 
 
 def _worst(limit: Requirement, recording: Recording, scenario: Scenario) -> float:
-    facts = Facts(of_whole_run(recording, scenario), frozenset(get_args(Where)))
+    facts = RunFacts(of_whole_run(recording, scenario), frozenset(get_args(Where)))
     (check,) = judge([limit], recording, facts, scenario.file)
     return check.limit if check.passed and check.value != check.value else check.value

@@ -10,7 +10,7 @@ from fmus.compiler.slicing import Slice
 from fmus.study_slices import outputs_left_out
 from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.job import Times
 

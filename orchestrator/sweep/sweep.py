@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.master import Interrupt
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.provenance import versions
 from orchestrator.sweep.batch import compile_models, own_choices

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pydantic import BaseModel
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.sweep.job import Chunk, job_from
 from orchestrator.sweep.store import ABOUT, sum_of
 from orchestrator.text.console import say

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import PENETRATION, Outcome, Scenario
@@ -22,16 +22,16 @@ from orchestrator.sweep.rows import (
 from orchestrator.sweep.study.theirs import declare_signals
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers, things_of
-from orchestrator.verdict.outcome import Asked, Ends, outcomes
-from orchestrator.verdict.truth import Bools, Truth
+from orchestrator.verdict.numbers import NUMBERS, SPEED, Metric, numbers, things_of
+from orchestrator.verdict.outcome import Ends, RequiredCheck, outcomes
+from orchestrator.verdict.truth import Bools, GroundTruth
 
 OUTCOMES: tuple[Outcome, ...] = ("parked", "not_parked", "failed", "aborted", "finished", "not_finished")
 
 
 RESULTS = {
     **NUMBERS,
-    "limit_share": Number("1", "largest ratio of value to limit among the required checks; above 1: violated"),
+    "limit_share": Metric("1", "largest ratio of value to limit among the required checks; above 1: violated"),
 }
 """Columns of results."""
 
@@ -50,12 +50,12 @@ class Verdict(NamedTuple):
         return np.array(OUTCOMES)[self.outcome]
 
 
-def judge(job: Job, truth: Truth, rows: Array) -> Verdict:
+def judge(job: Job, truth: GroundTruth, rows: Array) -> Verdict:
     """Return the results of runs of ``job`` from what was kept of them; ``truth``: what is true in each."""
     return judge_rows(Scenario(**job.scenario), truth, job.measures, rows)
 
 
-def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], rows: Array) -> Verdict:
+def judge_rows(scenario: Scenario, truth: GroundTruth, measures: Sequence[Measure], rows: Array) -> Verdict:
     """Return the results of runs that share a scenario's limits, from rows of ``measures``."""
     columns = rows[:, FIRST_MEASURE:].T
     found = dict(zip(measures, columns, strict=False))
@@ -66,14 +66,14 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
             results[scenario.requirements[place].signal] = values
     has = truth.has() | things(scenario, results)
     shares = np.zeros(len(rows))
-    asked: list[Asked] = []
+    asked: list[RequiredCheck] = []
     for place, limit in enumerate(scenario.requirements):
         if limit.required:
             values = recorded[place] if place in recorded else values_in(limit, results, found)
             is_asked = has[limit.where] if limit.where is not None else np.ones(len(rows), dtype=bool)
             bound = limit_value(limit)
             missed = is_asked & ~(CONDITIONS[limit.condition].margin(values, bound) >= 0.0)
-            asked.append(Asked(limit.id, missed, np.isnan(values)))
+            asked.append(RequiredCheck(limit.id, missed, np.isnan(values)))
             shares = np.maximum(shares, np.where(is_asked, share(limit.condition, values, bound), 0.0))
     mode, reason = (found[item] for item in last_words(scenario))
     broken = ["error" if end == ABORTED else "" for end in rows[:, 0].tolist()]

@@ -1,1 +1,1 @@
-"""Slaves as a system: what feeds what, in which unit and frame, what plays which role, what should be known before."""
+"""Instances as a system: connections, units, frames, roles, and diagnostics before a run."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from modelkit.variables import Variable
 from orchestrator.cosim.connections import Connection
-from orchestrator.cosim.slave import Ports, Slave
+from orchestrator.cosim.fmu_instance import FmuInstance, Ports
 from orchestrator.scenario.end_condition import state_word
 from orchestrator.scenario.wiring.system_text import Feed, PoseFrame, Term, terms
 from orchestrator.system.conversions import Affine, PoseChange, ValueMap
@@ -18,10 +18,10 @@ from orchestrator.text.quantities import scalar, unit_symbol
 UNITS_OF_A_POSE = ("m", "m", "rad")
 
 
-class Pin(NamedTuple):
-    """One end of a connection: a variable of a slave, and what is written beside it."""
+class Connector(NamedTuple):
+    """One end of a connection: a variable of an instance, and what is written beside it."""
 
-    slave: int
+    instance: int
     place: int
     variable: Variable
     ports: Ports
@@ -32,10 +32,10 @@ class Pin(NamedTuple):
 
 
 class SignalNames:
-    """The names of all inputs, or of all outputs, of slaves: ``plant.Wheel Angle, left``."""
+    """The names of all inputs, or of all outputs, of instances: ``plant.Wheel Angle, left``."""
 
-    def __init__(self, slaves: Sequence[Slave], is_input: bool) -> None:
-        self._ports = {slave.name: slave.inputs if is_input else slave.outputs for slave in slaves}
+    def __init__(self, instances: Sequence[FmuInstance], is_input: bool) -> None:
+        self._ports = {instance.name: instance.inputs if is_input else instance.outputs for instance in instances}
 
     def __contains__(self, full: object) -> bool:
         owner, _, name = str(full).partition(".")
@@ -43,13 +43,15 @@ class SignalNames:
         return ports is not None and ports.index.get(name, ports.own) < ports.own
 
 
-def pins_of(text: str, slaves: Sequence[Slave], is_input: bool, file: object, key: str, other: str = "") -> list[Pin]:
+def pins_of(
+    text: str, instances: Sequence[FmuInstance], is_input: bool, file: object, key: str, other: str = ""
+) -> list[Connector]:
     """Return the signals that ``text`` means: by name, or all of a group. ``other`` is the other end, for messages.
 
     Raises ``BadInput`` with the closest.
     """
-    found = terms(text, SignalNames(slaves, is_input))
-    return [end for term in found for end in _pins(term, slaves, is_input, SignalPlace(file, key, other))]
+    found = terms(text, SignalNames(instances, is_input))
+    return [end for term in found for end in _pins(term, instances, is_input, SignalPlace(file, key, other))]
 
 
 class SignalPlace(NamedTuple):
@@ -64,14 +66,14 @@ class SignalPlace(NamedTuple):
         return BadInput(text, file=self.file, key=self.key)
 
 
-def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, place: SignalPlace) -> list[Pin]:
+def _pins(term: Term, instances: Sequence[FmuInstance], is_input: bool, place: SignalPlace) -> list[Connector]:
     owner, _, name = term.name.partition(".")
-    names = [slave.name for slave in slaves]
+    names = [instance.name for instance in instances]
     if owner not in names:
         hint = suggestion(owner, names) or f"; there are {', '.join(names)}"
-        raise place.wrong(f"no slave is called {owner!r}{hint}")
+        raise place.wrong(f"no instance is called {owner!r}{hint}")
     number = names.index(owner)
-    ports = slaves[number].inputs if is_input else slaves[number].outputs
+    ports = instances[number].inputs if is_input else instances[number].outputs
     own = ports.names[: ports.own]
     found = [name] if name in own else [item for item in own if item.startswith((f"{name}.", f"{name}["))]
     if not found:
@@ -80,7 +82,7 @@ def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, place: SignalPlac
         raise place.wrong(f"{owner} has no {what} {name!r}{close}")
     sign = -1.0 if term.minus else 1.0
     return [
-        Pin(number, ports.index[item], ports.variables[ports.index[item]], ports, unit, sign, f"{owner}.{item}")
+        Connector(number, ports.index[item], ports.variables[ports.index[item]], ports, unit, sign, f"{owner}.{item}")
         for item in found
         for unit in (_unit(term, item, ports, is_input, place),)
     ]
@@ -109,14 +111,14 @@ def _line(term: Term, is_input: bool, place: SignalPlace) -> str:
     return f"a unit stands beside a signal whose FMU says none: write '{ends[0]}: {ends[1]}', or both without a unit"
 
 
-def declare_units(slave: Slave, written: Mapping[str, str], file: object) -> None:
+def declare_units(instance: FmuInstance, written: Mapping[str, str], file: object) -> None:
     """Have variables of which an FMU declares no unit in the units that are ``written``. Raises ``BadInput``."""
     for name, unit in written.items():
-        key = f"system.slaves.{slave.name}.units.{name}"
-        ports = next((item for item in (slave.inputs, slave.outputs) if name in item.index), None)
-        names = [*slave.inputs.names, *slave.outputs.names, *slave.parameters.names]
-        if ports is None and name not in slave.parameters.index:
-            raise BadInput(f"{slave.name} has no such variable{suggestion(name, names)}", file=file, key=key)
+        key = f"system.components.{instance.name}.units.{name}"
+        ports = next((item for item in (instance.inputs, instance.outputs) if name in item.index), None)
+        names = [*instance.inputs.names, *instance.outputs.names, *instance.parameters.names]
+        if ports is None and name not in instance.parameters.index:
+            raise BadInput(f"{instance.name} has no such variable{suggestion(name, names)}", file=file, key=key)
         if ports is None:
             continue
         place, symbol = ports.index[name], unit if unit in ports.scales else unit_symbol(unit)
@@ -129,24 +131,24 @@ def declare_units(slave: Slave, written: Mapping[str, str], file: object) -> Non
             raise BadInput(f"{name} is in {said}, as its FMU says, not in {unit}", file=file, key=key)
 
 
-class Feeder:
+class ConnectionBuilder:
     """Makes connections of one system."""
 
-    def __init__(self, slaves: Sequence[Slave], frames: dict[str, PoseFrame], file: object) -> None:
-        self._slaves = slaves
+    def __init__(self, instances: Sequence[FmuInstance], frames: dict[str, PoseFrame], file: object) -> None:
+        self._instances = instances
         self._frames = frames
         self._file = file
 
-    def constant(self, feed: Feed, targets: list[Pin], key: str) -> None:
+    def constant(self, feed: Feed, targets: list[Connector], key: str) -> None:
         """Give inputs a value that they keep."""
         for end in targets:
             named = end.variable._replace(name=key, signal=end.variable.signal._replace(unit=end.unit or "1"))
-            self._slaves[end.slave].inputs.values[end.place] = float(scalar(feed.value, named, file=self._file))
+            self._instances[end.instance].inputs.values[end.place] = float(scalar(feed.value, named, file=self._file))
 
-    def connections(self, feed: Feed, targets: list[Pin], key: str) -> list[Connection]:
+    def connections(self, feed: Feed, targets: list[Connector], key: str) -> list[Connection]:
         """Return what feeds ``targets``. Raises ``BadInput`` if number, unit or frame do not fit."""
         other = key.removeprefix("system.connections.") if key.startswith("system.connections.") else ""
-        sources = pins_of(feed.from_, self._slaves, False, self._file, key, other)
+        sources = pins_of(feed.from_, self._instances, False, self._file, key, other)
         if len(sources) != len(targets):
             raise self._wrong(f"{len(targets)} inputs, but {len(sources)} signals to feed them", key)
         if feed.into is not None or feed.out_of is not None:
@@ -155,14 +157,14 @@ class Feeder:
             return [self._map_connection(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
         return [self._scale_connection(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
 
-    def _scale_connection(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+    def _scale_connection(self, feed: Feed, source: Connector, target: Connector, key: str) -> Connection:
         factor, offset = self._factor(source, target, key) if feed.units else (1.0, 0.0)
         gain = source.sign * target.sign * feed.factor
         whole = gain * factor, feed.offset * factor + offset
         same = whole == (1.0, 0.0) and source.variable.kind is target.variable.kind
         return _connection(source, target, None if same else Affine(whole[:1], whole[1:], [target.variable]))
 
-    def _factor(self, source: Pin, target: Pin, key: str) -> tuple[float, float]:
+    def _factor(self, source: Connector, target: Connector, key: str) -> tuple[float, float]:
         if source.unit is None or target.unit is None:
             return 1.0, 0.0
         try:
@@ -171,7 +173,7 @@ class Feeder:
             ends = f"{source.name} is in {source.unit}, {target.name} in {target.unit}"
             raise self._wrong(f"{ends}: {error}", key) from None
 
-    def _map_connection(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+    def _map_connection(self, feed: Feed, source: Connector, target: Connector, key: str) -> Connection:
         assert feed.map is not None
         named = target.variable._replace(name=f"{key}.map")
         values = {
@@ -182,9 +184,13 @@ class Feeder:
         otherwise = float(scalar(other, named, file=self._file))
         return _connection(source, target, ValueMap(values, otherwise))
 
-    def _pose(self, feed: Feed, sources: list[Pin], targets: list[Pin], key: str) -> Connection:
-        if len(targets) != 3 or len({end.slave for end in sources}) > 1 or len({end.slave for end in targets}) > 1:
-            raise self._wrong("a pose is x, y and heading of one slave", key)
+    def _pose(self, feed: Feed, sources: list[Connector], targets: list[Connector], key: str) -> Connection:
+        if (
+            len(targets) != 3
+            or len({end.instance for end in sources}) > 1
+            or len({end.instance for end in targets}) > 1
+        ):
+            raise self._wrong("a pose is x, y and heading of one instance", key)
         frame = self._frames[feed.into or feed.out_of or ""]
         before = [self._factor(end, _in_si(end, unit), key) for end, unit in zip(sources, UNITS_OF_A_POSE, strict=True)]
         after = [self._factor(_in_si(end, unit), end, key) for end, unit in zip(targets, UNITS_OF_A_POSE, strict=True)]
@@ -194,14 +200,14 @@ class Feeder:
             Affine([pair[0] * end.sign for pair, end in zip(before, sources, strict=True)], _seconds(before), ()),
             Affine([pair[0] * end.sign for pair, end in zip(after, targets, strict=True)], _seconds(after), ()),
         )
-        return Connection(sources[0].slave, _places(sources), targets[0].slave, _places(targets), change)
+        return Connection(sources[0].instance, _places(sources), targets[0].instance, _places(targets), change)
 
     def _wrong(self, text: str, key: str) -> BadInput:
         return BadInput(text, file=self._file, key=key)
 
 
 def join_connections(found: list[Connection]) -> list[Connection]:
-    """Return the connections, those of equal slaves that need no conversion as one."""
+    """Return the connections, those of equal instances that need no conversion as one."""
     plain: dict[tuple[int, int], list[Connection]] = {}
     for item in found:
         if item.convert is None:
@@ -218,11 +224,11 @@ def join_connections(found: list[Connection]) -> list[Connection]:
     return [*together, *(item for item in found if item.convert is not None)]
 
 
-def _connection(source: Pin, target: Pin, convert: Affine | ValueMap | None) -> Connection:
-    return Connection(source.slave, _places([source]), target.slave, _places([target]), convert)
+def _connection(source: Connector, target: Connector, convert: Affine | ValueMap | None) -> Connection:
+    return Connection(source.instance, _places([source]), target.instance, _places([target]), convert)
 
 
-def _places(ends: list[Pin]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+def _places(ends: list[Connector]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.array([end.place for end in ends], dtype=np.intp)
 
 
@@ -230,7 +236,7 @@ def _seconds(pairs: list[tuple[float, float]]) -> list[float]:
     return [offset for _, offset in pairs]
 
 
-def _in_si(end: Pin, unit: str) -> Pin:
+def _in_si(end: Connector, unit: str) -> Connector:
     """Return an end whose number is in ``unit``, as a pose has it between its two ends."""
     return end._replace(unit=unit, name="that number of a pose")
 

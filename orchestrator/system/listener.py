@@ -1,10 +1,10 @@
-"""A slave that only listens: signals are seen under its name, nothing is computed."""
+"""An instance that only listens: signals are seen under its name, nothing is computed."""
 
-from orchestrator.cosim.slave import Ports
+from orchestrator.cosim.fmu_instance import Ports
 
 
 class Listener:
-    """Gives roles a name to be seen under, where no slave is called that."""
+    """Gives roles a name to be seen under, where no instance is called that."""
 
     identity = ""
     has_variable_step = True

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from modelkit.variables import Variable
-from orchestrator.cosim.slave import Ports
+from orchestrator.cosim.fmu_instance import Ports
 from orchestrator.system.units import scale_of
 
 PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from fmus.contents.units import BASE, unit
-from orchestrator.cosim.slave import Scale
+from orchestrator.cosim.fmu_instance import Scale
 from orchestrator.text.quantities import FACTORS, unit_symbol
 
 SAME = (1.0, 0.0)

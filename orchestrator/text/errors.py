@@ -40,7 +40,7 @@ def line_of(file: object, key: str | None) -> int:
 
 
 class RunError(Exception):
-    """A slave refused to go on; the run is aborted and says so."""
+    """An instance refused to go on; the run is aborted and says so."""
 
 
 class NotRunError(Exception):

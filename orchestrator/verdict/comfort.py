@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 JERK_HALF_WINDOW = 0.5
 """Jerk is taken over two stretches of this length [s]: the change of their mean accelerations."""

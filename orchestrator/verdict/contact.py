@@ -13,8 +13,8 @@ import numpy as np
 
 from modelkit.geometry import NO_HIT
 from modelkit.variables import variables
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import CarOutline, kerbs, things, vehicle_parameters

@@ -7,14 +7,14 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from modelkit.variables import variables
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Occasion, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.numbers import NUMBERS, Facts, signals_of
+from orchestrator.verdict.numbers import NUMBERS, RunFacts, signals_of
 from orchestrator.verdict.truth import Bools
 
 CHART = "controller.phase"
@@ -58,7 +58,7 @@ class Check(BaseModel):
     """False if an FMU lacks the output; then `passed` is false."""
 
 
-def judge(requirements: list[Requirement], recording: Recording, facts: Facts, file: str) -> list[Check]:
+def judge(requirements: list[Requirement], recording: Recording, facts: RunFacts, file: str) -> list[Check]:
     """Return one check for each requirement that is asked of a run with these facts.
 
     Raises ``BadInput`` for a name that neither the run nor the summary has, or a limit in another unit.

@@ -13,7 +13,7 @@ TOLD = "no target of the scenario is in this log; the errors are taken from the 
 NO_TARGET = "no target is in this log: where the car should stand is not known"
 
 
-class Logged(NamedTuple):
+class LoggedRun(NamedTuple):
     """The scenario of a recording."""
 
     scenario: Scenario
@@ -21,7 +21,7 @@ class Logged(NamedTuple):
     """What the log does not tell and was taken from elsewhere; empty if it tells all."""
 
 
-def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed") -> Logged:
+def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed") -> LoggedRun:
     """Return the scenario of ``recording``, which was read from ``file``. Raises ``BadInput`` if it has no meaning.
 
     Logs of old versions, and of other tools, carry no target or no scenario at all: the pose that the controller
@@ -34,11 +34,11 @@ def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed")
     except ValidationError as error:
         raise explain(error, file or None, list(Scenario.model_fields)) from None
     if "target" in carried:
-        return Logged(scenario, "")
+        return LoggedRun(scenario, "")
     told = pose_of(recording.parameters_of("controller"), "target")
     if "vehicle" not in carried:
         scenario = scenario.model_copy(update={"vehicle": recording.parameters_of("vehicle")})
     if told is None:
-        return Logged(scenario, NO_TARGET)
+        return LoggedRun(scenario, NO_TARGET)
     target = Target(**dict(zip(Target.model_fields, told, strict=True)))
-    return Logged(scenario.model_copy(update={"target": target}), TOLD)
+    return LoggedRun(scenario.model_copy(update={"target": target}), TOLD)

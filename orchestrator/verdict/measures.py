@@ -7,13 +7,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 
 How = Literal["last", "largest", "greatest", "smallest", "travel", "first", "time"]
 
 
-class When(NamedTuple):
+class Instants(NamedTuple):
     """The instants at which a mode has one of some values."""
 
     signal: str
@@ -28,13 +28,13 @@ class Measure(NamedTuple):
     changes; ``first``; ``time``: of the first instant [s], of whatever signal."""
     signal: str
     """``vehicle.speed``: an output, or an input as its model saw it."""
-    when: When | None = None
+    when: Instants | None = None
     """The instants that count; None: all."""
 
 
 def measure_recording(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
     """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
-    found = Gathered(measure.how)
+    found = GatheredMeasure(measure.how)
     for part in recording.parts():
         values = _samples_in_window(measure, part.recording)
         if values is not None and len(values):
@@ -51,7 +51,7 @@ def _samples_in_window(measure: Measure, recording: Recording) -> Array | None:
     return values
 
 
-class Gathered:
+class GatheredMeasure:
     """A measure of values that come in parts: the same bits however they are divided."""
 
     def __init__(self, how: How) -> None:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.verdict.comfort import DrySteering, PeakJerk
@@ -15,10 +15,10 @@ from orchestrator.verdict.contact import VEHICLE, contact_facts, has_scene
 from orchestrator.verdict.geometry import vehicle_parameters
 from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.standing import in_frames, kerb_distances, outline_margin
-from orchestrator.verdict.truth import Truth, truth_of
+from orchestrator.verdict.truth import GroundTruth, truth_of
 
 
-class Number(NamedTuple):
+class Metric(NamedTuple):
     """One number of a summary."""
 
     unit: str
@@ -31,39 +31,39 @@ class Number(NamedTuple):
 POSE = tuple(Measure("last", f"vehicle.pose.{axis}") for axis in ("x", "y", "heading"))
 SPEED = Measure("last", end_condition.SPEED)
 CLEARANCE = Measure("smallest", "vehicle.clearance")
-NUMBERS: dict[str, Number] = {
-    "duration": Number("s", "from start to the end of the run"),
-    "manoeuvres": Number(
+NUMBERS: dict[str, Metric] = {
+    "duration": Metric("s", "from start to the end of the run"),
+    "manoeuvres": Metric(
         "1", "number of manoeuvres; the first reverse motion counts as one", Measure("last", "controller.manoeuvres")
     ),
-    "max_speed": Number("m/s", "largest absolute speed", Measure("largest", end_condition.SPEED), True),
-    "final.x": Number("m", "x of the rear-axle midpoint at the end", POSE[0]),
-    "final.y": Number("m", "y of the rear-axle midpoint at the end", POSE[1]),
-    "final.heading": Number("rad", "heading at the end", POSE[2]),
-    "final.longitudinal_error": Number("m", "in the target's frame, along its heading"),
-    "final.lateral_error": Number("m", "in the target's frame, to its left"),
-    "final.heading_error": Number("rad", "heading minus the target's, wrapped"),
-    "final.steering_wheel_angle": Number(
+    "max_speed": Metric("m/s", "largest absolute speed", Measure("largest", end_condition.SPEED), True),
+    "final.x": Metric("m", "x of the rear-axle midpoint at the end", POSE[0]),
+    "final.y": Metric("m", "y of the rear-axle midpoint at the end", POSE[1]),
+    "final.heading": Metric("rad", "heading at the end", POSE[2]),
+    "final.longitudinal_error": Metric("m", "in the target's frame, along its heading"),
+    "final.lateral_error": Metric("m", "in the target's frame, to its left"),
+    "final.heading_error": Metric("rad", "heading minus the target's, wrapped"),
+    "final.steering_wheel_angle": Metric(
         "rad", "steering-wheel angle at the end, left positive", Measure("last", "vehicle.steering_wheel_angle")
     ),
-    "final.speed": Number("m/s", "speed at the end, reverse negative", SPEED),
-    "final.outline_margin": Number("m", "signed distance of the outline to the slot boundary, negative beyond it"),
-    "final.kerb_nearest": Number("m", "distance to the slot's kerb of the nearest tyre beside it"),
-    "final.kerb_farthest": Number("m", "distance to the slot's kerb of the farthest tyre beside it"),
-    "steering_travel": Number(
+    "final.speed": Metric("m/s", "speed at the end, reverse negative", SPEED),
+    "final.outline_margin": Metric("m", "signed distance of the outline to the slot boundary, negative beyond it"),
+    "final.kerb_nearest": Metric("m", "distance to the slot's kerb of the nearest tyre beside it"),
+    "final.kerb_farthest": Metric("m", "distance to the slot's kerb of the farthest tyre beside it"),
+    "steering_travel": Metric(
         "rad",
         "steering travel: sum of the absolute changes of the steering-wheel angle",
         Measure("travel", "vehicle.steering_wheel_angle"),
     ),
-    "min_clearance": Number(
+    "min_clearance": Metric(
         "m", "smallest clearance of the outline to boxes and kerbs; in contact minus the penetration depth", CLEARANCE
     ),
-    "polygon_clearance": Number(
+    "polygon_clearance": Metric(
         "m", "smallest clearance of the outline to the scenario's polygons; in contact minus the penetration depth"
     ),
-    PENETRATION: Number("m", "largest penetration depth of the outline into an obstacle; 0: no contact"),
-    "peak_jerk": Number("m/s3", "largest absolute jerk, averaged over a second"),
-    "dry_steering_count": Number("1", "dry-steering events: standstills with more than 5 deg of steering-wheel travel"),
+    PENETRATION: Metric("m", "largest penetration depth of the outline into an obstacle; 0: no contact"),
+    "peak_jerk": Metric("m/s3", "largest absolute jerk, averaged over a second"),
+    "dry_steering_count": Metric("1", "dry-steering events: standstills with more than 5 deg of steering-wheel travel"),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
 STANDING = (*ERRORS, "final.outline_margin", "final.kerb_nearest", "final.kerb_farthest")
@@ -86,7 +86,7 @@ def signals_of(name: str) -> list[str]:
     return [item.signal for item in measures]
 
 
-class Facts(NamedTuple):
+class RunFacts(NamedTuple):
     """What one run is judged by beside its signals."""
 
     numbers: dict[str, float]
@@ -95,7 +95,7 @@ class Facts(NamedTuple):
     """What the scenario has: ``target``, ``slot``, ``kerb``, ``obstacles``, ``scene``."""
 
 
-def facts_of(recording: Recording, scenario: Scenario) -> Facts:
+def facts_of(recording: Recording, scenario: Scenario) -> RunFacts:
     """Return the numbers of one recorded run of ``scenario``."""
     found = {
         measure: np.array([measure_recording(measure, recording)])
@@ -107,7 +107,7 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
     has = {name for name, rows in truth.has().items() if rows[0]}
     has |= things_of(scenario, recording.parameters_of(VEHICLE))
-    return Facts(made | of_whole_run(recording, scenario), frozenset(has))
+    return RunFacts(made | of_whole_run(recording, scenario), frozenset(has))
 
 
 def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
@@ -143,7 +143,7 @@ def _comfort(recording: Recording) -> tuple[float, float]:
     return jerk.value, turns.value if has_speed and has_wheel else math.nan
 
 
-def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> dict[str, Array]:
+def numbers(durations: Array, found: Mapping[Measure, Array], truth: GroundTruth) -> dict[str, Array]:
     """Return the numbers of many runs by name, one value for each.
 
     ``durations`` [s], ``found``: their measures, of which signals that do not exist may lack; ``truth``: where each
@@ -161,7 +161,7 @@ def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> d
     return {name: made[name] for name in NUMBERS}
 
 
-def _standing(poses: Array, truth: Truth) -> tuple[Array, ...]:
+def _standing(poses: Array, truth: GroundTruth) -> tuple[Array, ...]:
     """Return the numbers ``STANDING`` of cars at ``poses`` (n, 3)."""
     with np.errstate(over="ignore", invalid="ignore"):
         errors = in_frames(poses, truth.targets).T

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from modelkit.variables import Variable
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import states_of
 from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import CONTACT_FREE, MISSED, SUCCESS, Outcome, Scenario
@@ -30,7 +30,7 @@ class Ends(NamedTuple):
     """How fast the car is then [m/s]."""
 
 
-class Asked(NamedTuple):
+class RequiredCheck(NamedTuple):
     """One requirement that a run must meet to have done its task, an entry for each run."""
 
     id: str
@@ -40,7 +40,11 @@ class Asked(NamedTuple):
 
 
 def outcomes(
-    scenario: Scenario, ends: Ends, asked: list[Asked], mode: Variable | None = None, reason: Variable | None = None
+    scenario: Scenario,
+    ends: Ends,
+    asked: list[RequiredCheck],
+    mode: Variable | None = None,
+    reason: Variable | None = None,
 ) -> list[tuple[Outcome, str]]:
     """Return (outcome, why) of each run of ``scenario``; ``mode`` and ``reason`` as an FMU declares them, if it does.
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array, Indices
+from orchestrator.cosim.fmu_instance import Array, Indices
 from orchestrator.verdict.geometry import CarOutline
 
 Polygons = Sequence[Sequence[tuple[float, float]]]

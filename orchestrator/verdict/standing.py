@@ -10,7 +10,7 @@ from functools import reduce
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 
 
 def each(function: Callable[..., float], *values: Array) -> Array:

@@ -20,7 +20,7 @@ from orchestrator.verdict.geometry import vehicle_parameters
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.numbers import facts_of
-from orchestrator.verdict.outcome import Asked, Ends, outcomes, state_name
+from orchestrator.verdict.outcome import Ends, RequiredCheck, outcomes, state_name
 from orchestrator.verdict.standing import beyond_ends
 from orchestrator.verdict.truth import truth_of
 
@@ -88,7 +88,7 @@ class FmuUsed(_Part):
     """SHA-256 of that file, or of all sources of the models."""
 
 
-class Started(_Part):
+class StartRecord(_Part):
     """Time and command of the run."""
 
     time: str = ""
@@ -101,7 +101,7 @@ class Started(_Part):
     """Commit of the repository in that folder, with ``-modified`` if a tracked file differs."""
 
 
-class Tuned(_Part):
+class ParameterTuning(_Part):
     """A parameter that a viewer changed during the run."""
 
     t: float
@@ -129,7 +129,7 @@ class Lateness(_Part):
     """Largest lateness [s]."""
     at_end: float
     """Lateness of the last exchange [s]; large if the run was slower than real time."""
-    tuned: list[Tuned] = []
+    tuned: list[ParameterTuning] = []
     """Parameters changed during the run."""
 
 
@@ -172,7 +172,7 @@ class Summary(_Part):
     """Random seed of the scenario."""
     versions: dict[str, str]
     """Versions of Python, of this project and of the packages it uses."""
-    started: Started = Started()
+    started: StartRecord = StartRecord()
     """Time and command of the run."""
     standing: list[str] = []
     """Remarks on the final pose: an outline beyond the slot boundary, a large distance from the target."""
@@ -232,7 +232,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         real_time_factor=numbers["duration"] / wall_time if wall_time > 0.0 else 0.0,
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
-        started=Started(**recording.info.get("started", {})),
+        started=StartRecord(**recording.info.get("started", {})),
         realtime=recording.info.get("realtime"),
         standing=standing_of(recording, scenario, numbers),
         notes=[text for text in said if text],
@@ -287,7 +287,7 @@ def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> t
     signals = (scenario.stop_condition.signal, scenario.stop_condition.reason)
     last = (np.array([measure_recording(Measure("last", name), recording)]) for name in (*signals, SPEED))
     asked = [
-        Asked(check.id, np.array([not check.passed]), np.array([math.isnan(check.value)]))
+        RequiredCheck(check.id, np.array([not check.passed]), np.array([math.isnan(check.value)]))
         for check in checks
         if check.required
     ]

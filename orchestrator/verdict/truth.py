@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import CarOutline, Kerb, kerbs
 
@@ -23,7 +23,7 @@ TRUE_KEYS = ("target.", "slot.", "vehicle.scene.kerbs[", *CAR_KEYS)
 Bools = NDArray[np.bool_]
 
 
-class Truth(NamedTuple):
+class GroundTruth(NamedTuple):
     """Numbers [m, rad] of runs, NaN for what a scenario does not have."""
 
     targets: Array
@@ -35,9 +35,9 @@ class Truth(NamedTuple):
     cars: Array
     """(n, 4) front, rear, half width, wheelbase."""
 
-    def repeat(self, count: int) -> "Truth":
+    def repeat(self, count: int) -> "GroundTruth":
         """Return the truth of ``count`` runs in which all is as in this one."""
-        return Truth(*(np.repeat(part, count, axis=0) for part in self))
+        return GroundTruth(*(np.repeat(part, count, axis=0) for part in self))
 
     def has(self) -> dict[str, Bools]:
         """Return for each run whether its scenario has a target, a slot, a kerb at the slot."""
@@ -48,23 +48,23 @@ class Truth(NamedTuple):
         }
 
 
-def truth_of(scenario: Scenario, vehicle: Mapping[str, float]) -> Truth:
+def truth_of(scenario: Scenario, vehicle: Mapping[str, float]) -> GroundTruth:
     """Return the truth of one run, whose car has the parameters ``vehicle``."""
     target = scenario.target.pose if scenario.target is not None else (NONE,) * 3
     slot = tuple(scenario.slot.model_dump().values()) if scenario.slot is not None else (NONE,) * 5
     car = CarOutline.of(vehicle)
     beside = [(kerb.x1, kerb.y1, kerb.x2, kerb.y2) for kerb in _at_the_slot(scenario, car, kerbs(vehicle))]
-    return Truth(np.array([target]), np.array([slot]), np.array(beside).reshape(1, -1, 4), np.array([car]))
+    return GroundTruth(np.array([target]), np.array([slot]), np.array(beside).reshape(1, -1, 4), np.array([car]))
 
 
-def join_truths(parts: list[Truth]) -> Truth:
+def join_truths(parts: list[GroundTruth]) -> GroundTruth:
     """Return the truths of several runs as one."""
     most = max((part.kerbs.shape[1] for part in parts), default=0)
     missing = [((0, 0), (0, most - part.kerbs.shape[1]), (0, 0)) for part in parts]
     lanes = [np.pad(part.kerbs, room, constant_values=NONE) for part, room in zip(parts, missing, strict=True)]
     columns = zip(*((part.targets, part.slots, part.cars) for part in parts), strict=True)
     targets, slots, cars = (np.concatenate(column) for column in columns)
-    return Truth(targets, slots, np.concatenate(lanes), cars)
+    return GroundTruth(targets, slots, np.concatenate(lanes), cars)
 
 
 def _at_the_slot(scenario: Scenario, car: CarOutline, around: list[Kerb]) -> list[Kerb]:

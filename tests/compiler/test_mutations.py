@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from fmus.compiler import Refused
+from fmus.compiler import UnsupportedError
 from tests.compiler.language import HEAD, SIGNATURE, Twins, results
 
 TEXT = "# ---- types" + (Path(__file__).parent / "constructs.py").read_text().split("# ---- types", 1)[1]
@@ -101,7 +101,7 @@ def translated(mutants: Any, head: Any, folder: Any, seed: Any) -> Any:
         name = f"mutants_{seed}_{len(refused)}"
         try:
             return Twins(text, folder, name, warnings=("-w",)), refused
-        except Refused as error:
+        except UnsupportedError as error:
             found = error.refusals
         lines = (folder / f"{name}.py").read_text().splitlines()
         assert not [item for item in found if "does not understand" in item.what]

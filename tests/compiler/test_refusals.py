@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fmus.compiler import Refused, translate
+from fmus.compiler import UnsupportedError, translate
 from tests.compiler.bad_programs import BODIES, FRAME, HEAD, MODULES, WHOLE
 from tests.compiler.language import load, model_of
 
@@ -17,7 +17,7 @@ def refusals_of(text: Any, folder: Any) -> Any:
     """Return what is said of a module, and the lines marked in it."""
     module = load(text, folder, f"bad_{next(numbers)}")
     marked = [number for number, line in enumerate(text.splitlines(), start=1) if "# !" in line]
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(UnsupportedError) as refused:
         translate(model_of(module))
     for item in refused.value.refusals:
         assert item.file == f"{module.__name__}.py"

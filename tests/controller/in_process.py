@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.algorithm import CoSimulation
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.scenario.models import MODELS
 
 Look = Callable[[int, Any, Any], bool]
@@ -14,18 +14,18 @@ Look = Callable[[int, Any, Any], bool]
 class Looking:
     """The ending that looks."""
 
-    def __init__(self, slaves: list[InProcessSlave], look: Look) -> None:
-        self._slaves, self._look = slaves, look
+    def __init__(self, instances: list[ModelInstance], look: Look) -> None:
+        self._instances, self._look = instances, look
 
     def stop_reason(self, t_ns: int) -> str:
-        vehicle, controller = (slave.output for slave in self._slaves)
+        vehicle, controller = (instance.output for instance in self._instances)
         return "seen" if self._look(t_ns, vehicle, controller) else ""
 
 
 def run(parameters: dict[str, dict[str, Any]], stop_ns: int, step_ns: int, look: Look) -> None:
     """Drive until ``look`` says so, or until ``stop_ns``."""
-    slaves = [InProcessSlave(name, model, parameters[name]) for name, model in MODELS.items()]
-    master = Master(list(slaves), step_ns, stop_ns)
-    master.endings.append(Looking(slaves, look))
+    instances = [ModelInstance(name, model, parameters[name]) for name, model in MODELS.items()]
+    master = CoSimulation(list(instances), step_ns, stop_ns)
+    master.endings.append(Looking(instances, look))
     master.initialize()
     master.run()

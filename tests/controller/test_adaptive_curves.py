@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.adaptive.curves import SteeringLimits, arc_in, bend_of, line_in, s_curve, swing_way
+from controller_fmu.adaptive.curves import SteeringLimits, arc_in, bend_of, line_in, s_curve, swing_distance
 from controller_fmu.adaptive.route import curvature_at, drivable, foot_on, length_of, mirror_route, point_at
 from modelkit.vocabulary import Pose
 
@@ -49,7 +49,7 @@ def test_an_arc_that_is_too_tight_or_too_wide_is_none() -> None:
 
 
 def test_a_line_before_the_arc() -> None:
-    bend = bend_of(4.3, swing_way(0.3, 4.3, WHEEL))
+    bend = bend_of(4.3, swing_distance(0.3, 4.3, WHEEL))
     route = line_in(Pose(6.0, 3.0, 0.7), bend, 0.0)
     assert_ends_on_axis(route)
     assert drivable(route) == length_of(route)
@@ -59,7 +59,7 @@ def test_a_line_before_the_arc() -> None:
 @pytest.mark.parametrize("lead", [0.0, 0.8])
 @pytest.mark.parametrize(("speed", "radius"), [(0.0, 5.0), (0.3, 4.3), (0.3, 5.0), (0.6, 4.3)])
 def test_an_s_curve_leads_in(lead: float, speed: float, radius: float) -> None:
-    bend = bend_of(radius, swing_way(speed, radius, WHEEL))
+    bend = bend_of(radius, swing_distance(speed, radius, WHEEL))
     route = s_curve(Pose(9.0, 3.0, 0.05), lead, bend, bend, 0.2)
     assert_ends_on_axis(route)
     assert max(abs(curvature_at(route, 0.01 * k)) for k in range(int(100 * length_of(route)))) <= 1.0 / radius + 1e-9

@@ -9,8 +9,8 @@ from controller_fmu.adaptive.driver import (
     deceleration_of,
     on_stop_prompt,
     reaction_of,
-    shortest_way,
-    stopping_way,
+    shortest_drive,
+    stopping_distance,
     update_at_standstill,
     update_prompt,
     update_while_driving,
@@ -65,7 +65,7 @@ def test_a_stop_shows_reaction_and_deceleration_and_the_next_is_foreseen(reactio
     assert reaction_of(driver, BELIEF) == pytest.approx(reaction, abs=0.06)
     assert deceleration_of(driver, BELIEF) == pytest.approx(deceleration, rel=0.15)
     driver = drive([0.0] * round(100 * reaction) + [0.9] * 200, driver)
-    foreseen = stopping_way(driver, BELIEF)
+    foreseen = stopping_distance(driver, BELIEF)
     _, way = stop(driver, reaction, deceleration)
     assert foreseen == pytest.approx(way, abs=0.07)
 
@@ -92,4 +92,4 @@ def test_who_comes_down_with_the_advice_slows_down() -> None:
 def test_the_shortest_way_is_that_of_a_stop_asked_for_when_he_sets_out() -> None:
     driver = drive([0.0] * 50 + [1.0] * 400)
     driver, _ = stop(driver, 0.5, 2.0)
-    assert shortest_way(driver, BELIEF) == pytest.approx(1.0 * 0.5 + 1.0 / 4.0, abs=0.12)
+    assert shortest_drive(driver, BELIEF) == pytest.approx(1.0 * 0.5 + 1.0 / 4.0, abs=0.12)

@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.apa.hearing.mute import MUTE, SLOWLY, WAIT, count_mute, is_waited_for, spared, usable
 from controller_fmu.apa.watch import Duty, Watch, watch
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, Listened, update_sample
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, RangeSample, update_sample
 from controller_fmu.registry import ControllerInput, ControllerParams
 
 PARAMS = ControllerParams()
@@ -62,7 +62,7 @@ def test_the_clock_of_what_is_missed_runs_where_more_is_mute_than_can_be_spared(
 )
 def test_each_measurement_is_listened_to_once_however_seldom_data_is_exchanged(exchange: float, cycle: float) -> None:
     """A controller that samples every 10 ms reads what was measured up to the last exchange."""
-    state = Listened()
+    state = RangeSample()
     heard = []
     for sample in range(2000):
         exchanged = math.floor(sample * 0.01 / exchange + 1e-9) * exchange
@@ -76,7 +76,7 @@ def test_each_measurement_is_listened_to_once_however_seldom_data_is_exchanged(e
 
 def test_readings_that_stay_the_same_are_listened_to_too() -> None:
     """A car that stands hears the same again: then they are new after what an exchange may take."""
-    state = Listened()
+    state = RangeSample()
     times = []
     for sample in range(100):
         state = update_sample(state, (1.0,) * 12, sample * 10_000_000, 10_000_000, 0.05)

@@ -126,14 +126,14 @@ def test_every_trouble_ends_with_its_reason(
 
 def _drive_unchecked(vehicle: dict[str, Any], controller: dict[str, Any]) -> Run:
     """``with_values`` refuses NaN at the edge; here it must get past it."""
-    from orchestrator.cosim import in_process_slave
+    from orchestrator.cosim import model_instance as in_process_instance
 
     def force(cls: type[Any], changes: dict[str, Any]) -> Any:
         known = variables(cls)
         return constructor(cls)([changes.get(variable.name, variable.start) for variable in known])
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(in_process_slave, "with_values", force)
+        patch.setattr(in_process_instance, "with_values", force)
         return drive(vehicle, controller)
 
 

@@ -9,8 +9,8 @@ from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common import monitor
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.phases import Expected
-from controller_fmu.common.steering_monitor import SteeringWatch
+from controller_fmu.common.phases import PhaseExpectation
+from controller_fmu.common.steering_monitor import SteeringMonitorState
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear
@@ -19,7 +19,7 @@ PARAMS = ControllerParams()
 LIMIT, GUARD = PARAMS.limit, PARAMS.apa.guard
 DRIVING = ControllerInput(gear=Gear.DRIVE)
 MILLISECOND = 1_000_000
-OFF = SteeringWatch(request=0.31, angle=0.0)
+OFF = SteeringMonitorState(request=0.31, angle=0.0)
 ASSIST = {
     "blind": (PARAMS.apa.sensors.blind_time, Reason.SENSOR_LOSS),
     "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
@@ -63,7 +63,7 @@ def test_a_wheel_that_is_off_is_what_the_assist_waits_for() -> None:
 @pytest.mark.parametrize("clock", OTHERS)
 def test_the_other_systems_fail_just_past_each_limit(clock: str) -> None:
     seconds, reason = OTHERS[clock]
-    expected = Expected(begun=True, steering=False)
+    expected = PhaseExpectation(begun=True, steering=False)
     clocks: list[Any] = [{clock: ns} for ns in around(seconds)]
     states = [monitor.MonitorState(**given) for given in clocks]
     found = [monitor.reason_to_fail(state, DRIVING, expected, 0, 0, PARAMS) for state in states]
@@ -72,7 +72,7 @@ def test_the_other_systems_fail_just_past_each_limit(clock: str) -> None:
 
 @pytest.mark.parametrize("begun", [True, False])
 def test_the_other_systems_end_in_time(begun: bool) -> None:
-    expected = Expected(begun=begun, steering=False)
+    expected = PhaseExpectation(begun=begun, steering=False)
     found = [
         monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, ns, 0, PARAMS)
         for ns in around(LIMIT.duration)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pytest
 
-from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from modelkit.car import CarSteering
 from modelkit.random import seed_state, uniform
 from vehicle_fmu.interface import SteeringParams
@@ -25,7 +25,7 @@ def swings(t: float) -> float:
 
 
 class Driven(NamedTuple):
-    watch: SteeringWatch
+    watch: SteeringMonitorState
     failed_at: float
     """When the wheel was called faulty [s]; inf: never."""
 
@@ -38,7 +38,7 @@ def drive(
     rate: float = BELIEVED,
 ) -> Driven:
     """Return the watch after ``stop`` s; ``broken(t, angle)`` is the wheel from the moment it returns a number."""
-    angle, steering, watch, asked = 0.0, SteeringState(), at_rest(0.0, SteeringWatch().steering), 0.0
+    angle, steering, watch, asked = 0.0, SteeringState(), at_rest(0.0, SteeringMonitorState().steering), 0.0
     for k in range(round(stop * 1e9) // DT_NS):
         steering = pass_request(steering, asked, params, k * DT_NS, (k + 1) * DT_NS)
         angle = turn_steering_wheel(angle, steering.lagged, CarSteering(rate_limit=rate), 0.0, DT_NS * 1e-9, 1.0)

@@ -15,7 +15,7 @@ from controller_fmu.registry import System
 from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
 from fmus.contents.variables import fmi_variables, limits, mode_types
-from modelkit.model import View
+from modelkit.model import Variant
 from modelkit.variables import constructor, flatten, variables
 from vehicle_fmu import MODEL as VEHICLE
 
@@ -123,7 +123,7 @@ def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model: Any)
 
 def test_two_modes_of_one_name_are_told_apart() -> None:
     Mode = IntEnum("Mode", {"OFF": 0, "ON": 1}, module="engine.model")
-    model = toy_model.MODEL._replace(view=View(states=(("mode", Mode),)))
+    model = toy_model.MODEL._replace(view=Variant(states=(("mode", Mode),)))
     assert set(mode_types(toy_model.MODEL).values()) == {"Mode"}
     assert set(mode_types(model).values()) == {"toy_model.Mode", "engine.Mode"}
 

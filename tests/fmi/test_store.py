@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import store_model
 
-from fmus.compiler import Refused, translate
+from fmus.compiler import UnsupportedError, translate
 from fmus.contents.variables import fmi_variables
 from fmus.model_fields import field_refusals
 from fmus.native import fmu as native_fmu
@@ -167,7 +167,7 @@ def test_what_would_not_be_the_same_in_c_is_refused(
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "refused_store", raising=False)
     module = importlib.import_module("refused_store")
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(UnsupportedError) as refused:
         translate(MODEL._replace(package=module, step=module.step))
     assert said in str(refused.value)
 

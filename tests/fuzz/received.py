@@ -13,7 +13,7 @@ import numpy as np
 from lxml import etree
 
 from orchestrator.foreign import worker
-from orchestrator.foreign.process_slave import answer_of
+from orchestrator.foreign.remote_instance import answer_of
 from tests.fuzz.limits import ask
 from tests.fuzz.logs import _json as odd_json
 from tests.fuzz.logs import damaged

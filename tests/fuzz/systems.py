@@ -14,9 +14,9 @@ from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 import fmus.cache_paths
-from orchestrator.session.foreign import load_fitting
-from orchestrator.session.session import NOBODY, Messages, make_slaves
-from orchestrator.system.assemble import assemble
+from orchestrator.session.foreign import load_bound_scenario
+from orchestrator.session.session import NOBODY, Messages, make_instances
+from orchestrator.system.assemble import elaborate
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import BadInput
 
@@ -222,9 +222,9 @@ def _write(folder: Path, system: System, text: str) -> None:
 
 def _mistake(path: Path, system: System, is_damaged: bool) -> str:
     try:
-        scenario, _, foreign = load_fitting(str(path), [], NOBODY)
-        slaves = make_slaves(scenario, None, Messages(), foreign)
-        found = assemble(scenario, slaves)
+        scenario, _, foreign = load_bound_scenario(str(path), [], NOBODY)
+        instances = make_instances(scenario, None, Messages(), foreign)
+        found = elaborate(scenario, instances)
         remarks(found, None)
     except BadInput as error:
         said = str(error)
@@ -234,12 +234,12 @@ def _mistake(path: Path, system: System, is_damaged: bool) -> str:
     if is_damaged:
         return ""
     owner = "yard_plant" if system.is_nested else "plant"
-    brain = next(item for item in found.slaves if item.name == "brain")
-    plant = next(item for item in found.slaves if item.name == owner)
+    brain = next(item for item in found.instances if item.name == "brain")
+    plant = next(item for item in found.instances if item.name == owner)
     for place, pin in enumerate(system.brain):
         brain.outputs.values[brain.outputs.index[pin.name]] = 10.0 + place
     for link in found.connections:
-        given = found.slaves[link.source].outputs.values[link.source_places]
+        given = found.instances[link.source].outputs.values[link.source_places]
         plant.inputs.values[link.target_places] = given if link.convert is None else link.convert(given)
     for wanted in system.links:
         got = plant.inputs.values[plant.inputs.index[wanted.target.name]]

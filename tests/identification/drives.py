@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.identification.compiled_vehicle import INPUTS, OUTPUTS, CompiledVehicle, InputSequence
 from orchestrator.identification.signals import MeasuredDrive, Series, drive_of
 

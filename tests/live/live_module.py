@@ -11,7 +11,7 @@ from fmus.compiled_batch import FAULTS
 from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.master import last_exchange
+from orchestrator.cosim.algorithm import last_exchange
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.disturbed import fault_receivers, numbers_for
 

@@ -11,8 +11,8 @@ import pytest
 
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
+from orchestrator.cosim.algorithm import last_exchange
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.master import last_exchange
 from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario

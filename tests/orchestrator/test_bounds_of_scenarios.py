@@ -8,10 +8,10 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.fmu_instance import FmuInstance
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.session import Messages, make_slaves, run_slaves
+from orchestrator.session.session import Messages, make_instances, run_instances
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.step_test import load_step_test
 from orchestrator.text.errors import BadInput
@@ -29,15 +29,15 @@ def test_a_polygon_has_three_corners_or_more(tmp_path: Path, capsys: Any, corner
     assert said.count("\n") == 1
 
 
-def fixed(slaves: list[Slave], name: str) -> list[Slave]:
-    for item in slaves:
+def fixed(instances: list[FmuInstance], name: str) -> list[FmuInstance]:
+    for item in instances:
         item.has_variable_step = item.name != name
-    return slaves
+    return instances
 
 
 def test_a_run_ends_at_its_stop_time_also_between_two_steps() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=10", "step=7"])
-    ran = run_slaves(scenario, make_slaves(scenario, None, Messages()), Messages())
+    ran = run_instances(scenario, make_instances(scenario, None, Messages()), Messages())
     assert ran.end.t_ns == 10_000_000_000
     assert ran.recording.t.tolist() == [0.0, 7.0, 10.0]
     assert not any("stop_time" in text for text in ran.remarks)
@@ -46,7 +46,7 @@ def test_a_run_ends_at_its_stop_time_also_between_two_steps() -> None:
 @pytest.mark.parametrize(("every", "end"), [(1, "0.9"), (2, "0.6")])
 def test_a_stop_time_that_a_fixed_step_does_not_reach_is_reported(every: int, end: str) -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", f"decimation.vehicle={every}"])
-    ran = run_slaves(scenario, fixed(make_slaves(scenario, None, Messages()), "vehicle"), Messages())
+    ran = run_instances(scenario, fixed(make_instances(scenario, None, Messages()), "vehicle"), Messages())
     assert ran.end.t_ns == float(end) * 1e9
     assert any(f"the step of vehicle is fixed: a run ends at {end} s" in text for text in ran.remarks)
 
@@ -54,7 +54,7 @@ def test_a_stop_time_that_a_fixed_step_does_not_reach_is_reported(every: int, en
 def test_a_stop_time_before_the_end_of_a_fixed_step_is_refused() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=1", "step=0.3", "decimation.vehicle=5"])
     with pytest.raises(BadInput, match=r"stop_time: 1 s is less than the 1\.5 s which vehicle needs"):
-        run_slaves(scenario, fixed(make_slaves(scenario, None, Messages()), "vehicle"), Messages())
+        run_instances(scenario, fixed(make_instances(scenario, None, Messages()), "vehicle"), Messages())
 
 
 def test_a_step_test_ends_at_its_stop_time_if_the_fmu_allows_it(
@@ -65,7 +65,7 @@ def test_a_step_test_ends_at_its_stop_time_if_the_fmu_allows_it(
     recording = drive(load_step_test(path), "none")
     assert recording.t.tolist() == pytest.approx([0.0, 0.3, 0.6, 0.9, 1.0])
     assert recording.info["end"] == {"reason": "stop_time", "t_ns": 1_000_000_000}
-    monkeypatch.setattr(InProcessSlave, "has_variable_step", False)
+    monkeypatch.setattr(ModelInstance, "has_variable_step", False)
     with pytest.raises(BadInput, match=r"stop_time: 1 s is no whole number of steps of 0\.3 s, which the FMU needs"):
         drive(load_step_test(path), "none")
 

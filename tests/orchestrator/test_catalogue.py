@@ -12,14 +12,14 @@ from orchestrator.catalogue.run import Catalogue, judge_standards
 from orchestrator.catalogue.show import markdown
 from orchestrator.catalogue.verdicts import ClauseRun, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.cli import main
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import ImportedFmus
 from orchestrator.suite import suite
 from orchestrator.suite.junit import Case
-from orchestrator.suite.suite import Bench
+from orchestrator.suite.suite import SuiteConfig
 from orchestrator.text.errors import BAD_INPUT, BadInput
 from tests.docs.scripts import DOCS, script
 
@@ -188,7 +188,7 @@ def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
 ) -> None:
     assert main(["test", "catalogue/iso20900", "--out", str(tmp_path / "out")]) == 0
     assert "0 missed" in capsys.readouterr().out
-    bench = Bench(fmu_files("native", lambda text: None), "native", Foreign(), [], Interrupt())
+    bench = SuiteConfig(fmu_files("native", lambda text: None), "native", ImportedFmus(), [], Interrupt())
     for name in ("iso16787", "cicap-b1"):
         assert markdown(judge_standards([f"catalogue/{name}"], bench, tmp_path / name)) in page()
 
@@ -197,8 +197,8 @@ def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
 def test_somebody_elses_controller_is_judged_by_what_it_puts_out(tmp_path: Path) -> None:
     """Our own as a foreign FMU meets what it meets otherwise; one that crashes misses what it is run for."""
     catalogue = Catalogue(["catalogue/iso16787"])
-    foreign = Foreign({"controller": fmu_files("native", lambda text: None)["controller"]})
-    bench = Bench(fmu_files("native", lambda text: None), "native", foreign, [], Interrupt())
+    foreign = ImportedFmus({"controller": fmu_files("native", lambda text: None)["controller"]})
+    bench = SuiteConfig(fmu_files("native", lambda text: None), "native", foreign, [], Interrupt())
     catalogue.run([], bench, tmp_path, 1, lambda code: None)
     assert counts(catalogue.verdicts) == {"met": 5, "missed": 0, "not tested": 1}
     assert catalogue.code() == 0

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import ImportedFmus
 from orchestrator.suite.junit import Case, Suite, write_junit
-from orchestrator.suite.suite import Bench, run_test, select_scenarios
+from orchestrator.suite.suite import SuiteConfig, run_test, select_scenarios
 
 RULES = """
 - {id: parked at the end, signal: controller.phase, equals: PARKED, window: {at: end}, source: us}
@@ -137,7 +137,7 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(
     theirs = tmp_path / "their controller.fmu"
     theirs.write_bytes(files["controller"].read_bytes())
     monkeypatch.setattr("orchestrator.session.foreign.load_scenario", lambda name, sets, more: foreign_scenario(name))
-    bench = Bench(files, "python", Foreign({"controller": theirs}), [], Interrupt())
+    bench = SuiteConfig(files, "python", ImportedFmus({"controller": theirs}), [], Interrupt())
     tested = run_test("guo2015-case4", [], bench, tmp_path / "out")
     assert tested.ignored == ["controller.no_such_gain"]
     assert tested.passed

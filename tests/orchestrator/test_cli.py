@@ -157,17 +157,17 @@ def test_no_colours_in_a_pipe(tmp_path: Path) -> None:
     assert "final heading" in done.stdout
 
 
-def test_a_slave_that_fails_aborts_and_says_so(
+def test_an_instance_that_fails_aborts_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.cosim.in_process_slave import InProcessSlave
+    from orchestrator.cosim.model_instance import ModelInstance
     from orchestrator.text.errors import RunError
 
-    def step(self: InProcessSlave, t_ns: int, dt_ns: int) -> None:
+    def step(self: ModelInstance, t_ns: int, dt_ns: int) -> None:
         if t_ns >= 500_000_000:
             raise RunError(f"{self.name} failed at 0.5 s [mark]")
 
-    monkeypatch.setattr(InProcessSlave, "step", step)
+    monkeypatch.setattr(ModelInstance, "step", step)
     assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path), "--no-page"]) == 1
     assert "aborted: error: vehicle failed at 0.5 s [mark]" in capsys.readouterr().out
     found = read_log(tmp_path / "run.mcap")
@@ -175,16 +175,16 @@ def test_a_slave_that_fails_aborts_and_says_so(
     assert json.loads((tmp_path / "summary.json").read_text())["outcome"] == "aborted"
 
 
-def test_a_slave_that_does_not_start_aborts_too(
+def test_an_instance_that_does_not_start_aborts_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.cosim.in_process_slave import InProcessSlave
+    from orchestrator.cosim.model_instance import ModelInstance
     from orchestrator.text.errors import RunError
 
-    def initialize(self: InProcessSlave, stop_ns: int) -> None:
+    def initialize(self: ModelInstance, stop_ns: int) -> None:
         raise RunError(f"{self.name} refuses to initialize")
 
-    monkeypatch.setattr(InProcessSlave, "initialize", initialize)
+    monkeypatch.setattr(ModelInstance, "initialize", initialize)
     assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path)]) == 1
     assert "aborted: error: vehicle refuses to initialize" in capsys.readouterr().out
     assert len(read_log(tmp_path / "run.mcap").t_ns) == 0

@@ -5,25 +5,25 @@ import pytest
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.connections import connect
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.fmu_instance import FmuInstance
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.text.errors import BadInput
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 
-def toys() -> list[InProcessSlave]:
-    return [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+def toys() -> list[ModelInstance]:
+    return [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
 
 
-def replace(slave: Slave, name: str, variable: Variable) -> None:
-    slave.inputs.variables[slave.inputs.index[name]] = variable
+def replace(instance: FmuInstance, name: str, variable: Variable) -> None:
+    instance.inputs.variables[instance.inputs.index[name]] = variable
 
 
 def test_equal_names_are_connected_both_ways() -> None:
-    slaves = toys()
+    instances = toys()
     found = {
-        (slaves[link.source].outputs.names[a], slaves[link.target].inputs.names[b])
-        for link in connect(list(slaves))
+        (instances[link.source].outputs.names[a], instances[link.target].inputs.names[b])
+        for link in connect(list(instances))
         for a, b in zip(link.source_places, link.target_places, strict=True)
     }
     names = {"command", "mode", "active", "right", "pose.x", "pose.y", "pose.heading", "moving", "left"}
@@ -31,20 +31,20 @@ def test_equal_names_are_connected_both_ways() -> None:
 
 
 def test_another_unit_is_refused_by_name() -> None:
-    slaves = toys()
-    replace(slaves[0], "command", Variable("command", float, Signal("rad", ""), 0.0))
+    instances = toys()
+    replace(instances[0], "command", Variable("command", float, Signal("rad", ""), 0.0))
     with pytest.raises(BadInput, match="command: output of brain is in m/s, input of plant in rad"):
-        connect(list(slaves))
+        connect(list(instances))
 
 
 def test_another_type_is_refused_by_name() -> None:
-    slaves = toys()
-    replace(slaves[0], "command", Variable("command", int, Signal("m/s", ""), 0))
+    instances = toys()
+    replace(instances[0], "command", Variable("command", int, Signal("m/s", ""), 0))
     with pytest.raises(BadInput, match="command: output of brain is float, input of plant is int"):
-        connect(list(slaves))
+        connect(list(instances))
 
 
 def test_two_sources_for_one_input_are_refused() -> None:
-    slaves = [*toys(), InProcessSlave("second", BRAIN, {})]
+    instances = [*toys(), ModelInstance("second", BRAIN, {})]
     with pytest.raises(BadInput, match="brain and second both have an output"):
-        connect(list(slaves))
+        connect(list(instances))

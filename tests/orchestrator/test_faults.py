@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from orchestrator.cosim.algorithm import CoSimulation
 from orchestrator.cosim.faults import manipulators
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.fmu_instance import FmuInstance
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput
 from tests.orchestrator.toy_models import BRAIN, PLANT
@@ -21,10 +21,10 @@ TIMES = np.arange(11) * 0.01
 
 
 def run(*faults: dict[str, Any], seed: int = 1, every: dict[str, int] | None = None) -> Recording:
-    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
-    master = Master(slaves, STEP, 10 * STEP, every)
+    instances: list[FmuInstance] = [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
+    master = CoSimulation(instances, STEP, 10 * STEP, every)
     master.manipulators += manipulators([Fault(**fault) for fault in faults], master, seed)
-    recorder = Recorder(slaves, 11)
+    recorder = Recorder(instances, 11)
     master.observers.append(recorder)
     master.initialize()
     master.run()

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.description import read_description
+from orchestrator.cosim.model_description import read_description
 from orchestrator.foreign import worker
-from orchestrator.foreign.process_slave import answer_of
+from orchestrator.foreign.remote_instance import answer_of
 from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
 from orchestrator.log.messages import read_messages
 from orchestrator.system.signal_matching import _places_to_compare

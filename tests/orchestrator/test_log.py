@@ -12,15 +12,15 @@ from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import End
+from orchestrator.cosim.algorithm import Termination
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.mcap_file import CHUNK_SIZE, McapFile
 from orchestrator.log.mcap_log import McapLog
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.session import Messages, run_scenario, run_slaves
+from orchestrator.session.session import Messages, run_instances, run_scenario
 from orchestrator.text.errors import BadInput
 from tests.orchestrator.toy_models import BRAIN, PLANT, Mode
 
@@ -31,8 +31,8 @@ DEMO = str(Path(__file__).with_name("demo.yaml"))
 def toy_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recording]:
     path = tmp_path_factory.mktemp("log") / "run.mcap"
     scenario = load_scenario(DEMO, ["stop_time=3"])
-    slaves = [InProcessSlave("plant", PLANT, {"gain": 3.0}), InProcessSlave("brain", BRAIN, {})]
-    return path, run_slaves(scenario, list(slaves), Messages(), log=path).recording
+    instances = [ModelInstance("plant", PLANT, {"gain": 3.0}), ModelInstance("brain", BRAIN, {})]
+    return path, run_instances(scenario, list(instances), Messages(), log=path).recording
 
 
 @pytest.fixture(scope="module")
@@ -140,13 +140,13 @@ def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
 
 def test_an_odd_value_comes_back(tmp_path: Path) -> None:
     scenario = load_scenario(DEMO, ["stop_time=0.1"])
-    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+    instances = [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
     odd = {"command": float("nan"), "mode": -3.0, "right": -(2.0**31), "active": 1.0}
     for name, value in odd.items():
-        slaves[0].inputs.values[slaves[0].inputs.index[name]] = value
-    log = McapLog(tmp_path / "x.mcap", list(slaves), scenario, {})
+        instances[0].inputs.values[instances[0].inputs.index[name]] = value
+    log = McapLog(tmp_path / "x.mcap", list(instances), scenario, {})
     log.on_communication_point(0)
-    log.on_terminate(End("done", 0))
+    log.on_terminate(Termination("done", 0))
     read = read_log(tmp_path / "x.mcap").signals
     assert np.isnan(read["plant.command"][0])
     assert [read[f"plant.{name}"][0] for name in ("mode", "right", "active")] == [-3.0, -(2.0**31), 1.0]
@@ -173,13 +173,13 @@ def test_no_log_is_explained(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 3])
 def test_any_number_of_rows_about_a_chunk(tmp_path: Path, rows: int) -> None:
-    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
-    for slave in slaves:
-        slave.initialize(0)
-        slave.fetch_outputs()
-    log = McapLog(tmp_path / "x.mcap", list(slaves), Scenario(name="none"), {})
+    instances = [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
+    for instance in instances:
+        instance.initialize(0)
+        instance.fetch_outputs()
+    log = McapLog(tmp_path / "x.mcap", list(instances), Scenario(name="none"), {})
     count = 0 if rows == 0 else log.rows_per_chunk + rows - 2
     for row in range(count):
         log.on_communication_point(row)
-    log.on_terminate(End("done", count))
+    log.on_terminate(Termination("done", count))
     assert read_log(tmp_path / "x.mcap").t_ns.tolist() == list(range(count))

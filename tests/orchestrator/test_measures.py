@@ -12,9 +12,9 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.requirements import Condition
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.conditions import CONDITIONS, share
-from orchestrator.verdict.measures import Measure, When, measure_recording
+from orchestrator.verdict.measures import Instants, Measure, measure_recording
 from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, POSE, facts_of, numbers
-from orchestrator.verdict.truth import Truth, truth_of
+from orchestrator.verdict.truth import GroundTruth, truth_of
 
 VALUES = np.array([1.0, -3.0, 2.0])
 
@@ -61,12 +61,14 @@ def test_share_of_a_limit_that_is_used() -> None:
 def test_numbers_of_many_runs_are_those_of_each() -> None:
     rng = np.random.default_rng(1)
     found = {measure: rng.normal(size=5) for measure in MEASURES}
-    true = Truth(rng.normal(size=(5, 3)), rng.normal(size=(5, 5)), rng.normal(size=(5, 2, 4)), rng.normal(size=(5, 4)))
+    true = GroundTruth(
+        rng.normal(size=(5, 3)), rng.normal(size=(5, 5)), rng.normal(size=(5, 2, 4)), rng.normal(size=(5, 4))
+    )
     whole = numbers(np.arange(5.0), found, true)
     assert list(whole) == list(NUMBERS)
     for row in range(5):
         own = {key: values[row : row + 1] for key, values in found.items()}
-        alone = numbers(np.array([float(row)]), own, Truth(*(part[row : row + 1] for part in true)))
+        alone = numbers(np.array([float(row)]), own, GroundTruth(*(part[row : row + 1] for part in true)))
         kept = [name for name in NUMBERS if name not in OF_WHOLE_RUNS]
         assert {name: alone[name][0] for name in kept} == {name: whole[name][row] for name in kept}
         assert all(np.isnan(alone[name]).all() for name in OF_WHOLE_RUNS)
@@ -94,5 +96,5 @@ def test_only_the_instants_that_count() -> None:
     cast("dict[str, Any]", run.signals)["controller.phase"] = np.array([0.0, 2.0, 2.0, 3.0])
     meant = {"last": -3.0, "first": 1.0, "largest": -3.0, "greatest": 1.0, "smallest": -3.0, "travel": 4.0}
     for how, value in meant.items():
-        assert measure_recording(Measure(how, "vehicle.speed", When("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]
-        assert math.isnan(measure_recording(Measure(how, "vehicle.speed", When("controller.phase", (5,))), run))  # type: ignore[arg-type]
+        assert measure_recording(Measure(how, "vehicle.speed", Instants("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]
+        assert math.isnan(measure_recording(Measure(how, "vehicle.speed", Instants("controller.phase", (5,))), run))  # type: ignore[arg-type]

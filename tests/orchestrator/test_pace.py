@@ -2,7 +2,7 @@
 
 import pytest
 
-from controller_fmu.common.monitor import PACE, time_counted
+from controller_fmu.common.monitor import SLOW_DRIVING_SPEED, time_counted
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.pace import TIMED_SPEED
 
@@ -26,11 +26,11 @@ def test_the_stop_time_is_beyond_the_controller_s_limit_at_the_driver_s_speed(se
 
 
 @pytest.mark.parametrize(
-    ("speed", "share"), [(0.0, 1.0), (0.01, 1.0), (-0.06, 0.2), (0.15, 0.5), (PACE, 1.0), (-2.0, 1.0)]
+    ("speed", "share"), [(0.0, 1.0), (0.01, 1.0), (-0.06, 0.2), (0.15, 0.5), (SLOW_DRIVING_SPEED, 1.0), (-2.0, 1.0)]
 )
 def test_time_is_counted_by_the_way_of_a_creeping_car(speed: float, share: float) -> None:
     assert time_counted(10_000_000, speed, 0.01) == pytest.approx(share * 1e7, abs=1.0)
 
 
 def test_stop_times_and_controllers_count_by_distance_below_the_same_speed() -> None:
-    assert TIMED_SPEED == PACE
+    assert TIMED_SPEED == SLOW_DRIVING_SPEED

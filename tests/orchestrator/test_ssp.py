@@ -10,9 +10,9 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import load_fitting
-from orchestrator.session.session import NOBODY, Messages, make_slaves
-from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.session.foreign import load_bound_scenario
+from orchestrator.session.session import NOBODY, Messages, make_instances
+from orchestrator.system.assemble import ElaboratedSystem, elaborate
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import BadInput
 from tests.orchestrator import c_fmus
@@ -195,16 +195,16 @@ def real(name: str, value: str, unit: str = "") -> str:
     return f'<ssv:Parameter name="{name}"><ssv:Real value="{value}"{with_unit}/></ssv:Parameter>'
 
 
-def assembled(path: Path) -> tuple[Scenario, Assembled]:
-    scenario, _, foreign = load_fitting(str(path), [], NOBODY)
-    slaves = make_slaves(scenario, None, Messages(), foreign)
-    return scenario, assemble(scenario, slaves)
+def assembled(path: Path) -> tuple[Scenario, ElaboratedSystem]:
+    scenario, _, foreign = load_bound_scenario(str(path), [], NOBODY)
+    instances = make_instances(scenario, None, Messages(), foreign)
+    return scenario, elaborate(scenario, instances)
 
 
-def moved(system: Assembled, value: float) -> float:
+def moved(system: ElaboratedSystem, value: float) -> float:
     """Return what the plant's steering input gets of a number of the brain."""
     (link,) = system.connections
-    brain = next(item for item in system.slaves if item.name == "brain")
+    brain = next(item for item in system.instances if item.name == "brain")
     brain.outputs.values[link.source_places] = value
     given = brain.outputs.values[link.source_places]
     return float((given if link.convert is None else link.convert(given))[0])
@@ -265,7 +265,7 @@ def test_a_value_without_unit_is_in_that_of_its_connector(tmp_path: Path) -> Non
 
 def test_a_value_of_an_input_is_its_start_and_one_of_nothing_is_told(tmp_path: Path) -> None:
     scenario, system = assembled(small(tmp_path, values=real("Offset", "2.5") + real("Ofset", "1")))
-    plant = next(item for item in system.slaves if item.name == "plant")
+    plant = next(item for item in system.instances if item.name == "plant")
     assert plant.inputs.values[plant.inputs.index["Offset"]] == 2.5
     assert scenario.system is not None
     assert remarks(system, None, scenario.system.ignored)[-1].endswith("plant.Ofset: its FMU has no such variable")

@@ -1,4 +1,4 @@
-"""Any system: slaves of others with names, units and frames of their own, connected by a few lines and judged."""
+"""Any system: instances of others with names, units and frames of their own, connected by a few lines and judged."""
 
 import json
 import math
@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from orchestrator.cli import main
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import Master
-from orchestrator.cosim.slave import Scale, Slave
+from orchestrator.cosim.algorithm import CoSimulation
+from orchestrator.cosim.fmu_instance import FmuInstance, Scale
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.system_text import Origin, PoseFrame, SystemText, Term, terms
-from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.system.assemble import ElaboratedSystem, elaborate
 from orchestrator.system.conversions import into, out_of
 from orchestrator.system.remarks import loops, remarks
 from orchestrator.system.units import UnfitUnitsError, conversion
@@ -77,7 +77,9 @@ def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> No
     assert {"/tf", "/scene", "/trail", "/plant", "/gps", "/gps/parameters"} <= topics
 
 
-def test_parameters_and_faults_of_a_third_slave(desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_parameters_and_faults_of_a_third_instance(
+    desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     system = ["run", str(desk / "all_theirs.yaml"), "--fmus", "none", "--out", str(tmp_path), "--no-page", "--json"]
     assert main([*system, "--set", "gps.bias=20 cm"]) == 0
     assert read_log(tmp_path / "run.mcap").parameters["gps.bias"] == 0.2
@@ -130,21 +132,21 @@ def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk:
     assert summary["checks"][0]["note"] == "not measured"
 
 
-def toys(text: str) -> tuple[Scenario, list[Slave]]:
-    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+def toys(text: str) -> tuple[Scenario, list[FmuInstance]]:
+    instances: list[FmuInstance] = [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
     written = {"components": {"plant": "p.fmu", "brain": "b.fmu"}, **yaml.safe_load(text)}
-    return Scenario(name="toys", system=SystemText(**written)), slaves
+    return Scenario(name="toys", system=SystemText(**written)), instances
 
 
-def assembled(text: str) -> Assembled:
-    return assemble(*toys(text))
+def assembled(text: str) -> ElaboratedSystem:
+    return elaborate(*toys(text))
 
 
 def exchanged(text: str, **outputs: float) -> dict[str, float]:
     """Return the inputs of the plant after one exchange with the given outputs of the brain."""
     system = assembled(text)
-    plant, brain = system.slaves[:2]
-    master = Master(system.slaves, 10, 20, None, system.connections)
+    plant, brain = system.instances[:2]
+    master = CoSimulation(system.instances, 10, 20, None, system.connections)
     master.initialize()
     fetch = brain.fetch_outputs
 
@@ -182,7 +184,7 @@ def test_a_unit_is_written_where_the_fmu_says_none_or_one() -> None:
     [
         ("connections: {plant.comand: brain.command}", "no input 'comand'; did you mean plant.command?"),
         ("connections: {plant.command: brain.comand}", "no output 'comand'; did you mean brain.command?"),
-        ("connections: {plnt.command: brain.command}", "no slave is called 'plnt'; did you mean plant?"),
+        ("connections: {plnt.command: brain.command}", "no instance is called 'plnt'; did you mean plant?"),
         ("connections: {plant.command: bran.command}", "'bran.command' is not a number"),
         ("connections: {plant.command: 5 deg}", "'5 deg' is in 'deg', expected a number in m/s"),
         ("connections: {'plant.command, plant.right': brain.command}", "2 inputs, but 1 signals"),
@@ -231,25 +233,28 @@ def test_a_system_that_has_no_meaning_is_bad_input(
 
 def test_a_group_is_connected_as_one_and_what_is_left_by_name() -> None:
     system = assembled("connections: {brain.pose: plant.pose}")
-    fed = {(system.slaves[slave].name, system.slaves[slave].inputs.names[place]) for slave, place in system.fed}
+    fed = {
+        (system.instances[instance].name, system.instances[instance].inputs.names[place])
+        for instance, place in system.fed
+    }
     assert fed >= {("brain", "pose.x"), ("brain", "pose.heading"), ("plant", "command"), ("plant", "active")}
 
 
 def test_a_loop_of_direct_feedthrough_is_said() -> None:
-    scenario, slaves = toys("{}")
-    slaves[0].outputs.direct = {"left": ["right"]}
-    assert loops(assemble(scenario, slaves)) == []
-    slaves[1].outputs.direct = {"right": ["left"]}
-    (said,) = loops(assemble(scenario, slaves))
+    scenario, instances = toys("{}")
+    instances[0].outputs.direct = {"left": ["right"]}
+    assert loops(elaborate(scenario, instances)) == []
+    instances[1].outputs.direct = {"right": ["left"]}
+    (said,) = loops(elaborate(scenario, instances))
     assert said.startswith("algebraic loop: ")
     assert "plant.left -> brain.right -> plant.left" in said + said.partition(": ")[2]
 
 
 def test_what_a_verdict_needs_and_nobody_plays_is_said() -> None:
-    scenario, slaves = toys("roles: {pose: plant.pose}")
-    said = " ".join(remarks(assemble(scenario, slaves), scenario.stop_condition))
+    scenario, instances = toys("roles: {pose: plant.pose}")
+    said = " ".join(remarks(elaborate(scenario, instances), scenario.stop_condition))
     assert "has no output speed: standstill does not end the run" in said
-    assert "no slave is called controller, nor plays its roles" in said
+    assert "no instance is called controller, nor plays its roles" in said
     assert "pose.x" not in said
 
 

@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.description import read_description
+from orchestrator.cosim.model_description import read_description
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.tpcap import read_tpcap
-from orchestrator.session.foreign import load_fitting
-from orchestrator.session.session import NOBODY, Messages, make_slaves
-from orchestrator.system.assemble import assemble
+from orchestrator.session.foreign import load_bound_scenario
+from orchestrator.session.session import NOBODY, Messages, make_instances
+from orchestrator.system.assemble import elaborate
 from orchestrator.text.errors import BadInput
 from orchestrator.text.yaml_file import read_mapping
 
@@ -35,8 +35,8 @@ def fmu(path: Path, *variables: tuple[str, str]) -> Path:
 
 def assembled(folder: Path, system: str) -> Any:
     (folder / "scenario.yaml").write_text(f"task: open_loop\nsystem: {system}\n")
-    scenario, _, foreign = load_fitting(str(folder / "scenario.yaml"), [], NOBODY)
-    return assemble(scenario, make_slaves(scenario, None, Messages(), foreign))
+    scenario, _, foreign = load_bound_scenario(str(folder / "scenario.yaml"), [], NOBODY)
+    return elaborate(scenario, make_instances(scenario, None, Messages(), foreign))
 
 
 def test_an_output_that_is_judged_in_another_unit_is_refused_with_the_line_to_write(tmp_path: Path) -> None:
@@ -49,12 +49,12 @@ def test_an_output_that_is_judged_in_another_unit_is_refused_with_the_line_to_wr
 
 def test_a_unit_on_the_wrong_side_is_refused_with_the_line_to_write(tmp_path: Path) -> None:
     fmu(tmp_path / "car.fmu", ("angle", "rad"), ("bare", ""))
-    slaves = "components: {controller: none, plant: car.fmu}"
+    instances = "components: {controller: none, plant: car.fmu}"
     with pytest.raises(BadInput) as error:
-        assembled(tmp_path, f"{{{slaves}, connections: {{'vehicle.steering_wheel_request [deg]': plant.bare}}}}")
+        assembled(tmp_path, f"{{{instances}, connections: {{'vehicle.steering_wheel_request [deg]': plant.bare}}}}")
     assert "write 'vehicle.steering_wheel_request: plant.bare [deg]'" in str(error.value)
     with pytest.raises(BadInput) as error:
-        assembled(tmp_path, f"{{{slaves}, connections: {{vehicle.steering_wheel_request: 'plant.angle [deg]'}}}}")
+        assembled(tmp_path, f"{{{instances}, connections: {{vehicle.steering_wheel_request: 'plant.angle [deg]'}}}}")
     assert "plant.angle is in rad, as its FMU says, not in deg" in str(error.value)
 
 

@@ -107,11 +107,11 @@ def test_fewer_runs_are_the_first_of_more() -> None:
 def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
     row = {"touched.mode": 4.0, "touched.takeover": 0.0, "mode": 6.0, "reason": "none", "kind": 0.0}
     row["within GB/T 41630, parallel"] = True
-    wall, person = ends.Touched("wall behind", False), ends.Touched("person", True)
+    wall, person = ends.InitialContact("wall behind", False), ends.InitialContact("person", True)
     assert ends.end_of(row, wall) == ends.CONTACT
     assert ends.end_of({**row, "touched.mode": 2.0}, wall) == ends.DRIVER
     assert ends.end_of(row, person) == ends.WALKED_INTO
-    kerb = ends.Touched("kerb behind", False)
+    kerb = ends.InitialContact("kerb behind", False)
     assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.08}, kerb) == ends.CONTACT
     assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.079}, kerb) == ends.LOW_KERB
     assert ends.end_of(row, None) == ends.PARKED
@@ -206,10 +206,10 @@ def test_who_brought_a_contact_about(speed: Any, walker: Any, name: str, came: b
     }
     row |= {f"vehicle.scene.boxes[4].{key}": value for key, value in box.items()}
     first = ends.first_contact(row)
-    assert first == ends.Touched(name, came)
+    assert first == ends.InitialContact(name, came)
     assert not ends.is_driven_into(row, first), "it drives"
     assert ends.is_driven_into({**row, "touched.speed": 0.005}, first) == (speed[1] != 0.0)
-    assert not ends.is_driven_into({**row, "touched.speed": 0.0}, ends.Touched("kerb behind", False))
+    assert not ends.is_driven_into({**row, "touched.speed": 0.0}, ends.InitialContact("kerb behind", False))
 
 
 CAR = {"wheelbase": 2.405, "front_overhang": 0.8, "rear_overhang": 0.6, "width": 1.65}
@@ -241,9 +241,9 @@ def test_another_system_is_judged_by_what_every_controller_reports() -> None:
     assert ends.end_of_any({**row, f"within {GBT[1]}": 0.0}, None) == "false parked"
     assert ends.end_of_any({**row, "outcome": "failed"}, None) == "gave up"
     touching = {"touched.steering_active": 1.0, "touched.takeover": 0.0, "vehicle.scene.kerbs[1].height": 0.0}
-    assert ends.end_of_any(touching, ends.Touched("first neighbour", came=False)) == "contact"
+    assert ends.end_of_any(touching, ends.InitialContact("first neighbour", came=False)) == "contact"
     assert (
-        ends.end_of_any({**touching, "touched.takeover": 1.0}, ends.Touched("wall behind", came=False))
+        ends.end_of_any({**touching, "touched.takeover": 1.0}, ends.InitialContact("wall behind", came=False))
         == "contact, driver drives"
     )
-    assert ends.end_of_any(touching, ends.Touched("person", came=True)) == "walked into"
+    assert ends.end_of_any(touching, ends.InitialContact("person", came=True)) == "walked into"

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrator.steptest.response import Response, overshoot, rise_time, settling_time, steady_state_error
-from orchestrator.steptest.temporal import Decided, always, eventually, rises, until
+from orchestrator.steptest.temporal import TemporalResult, always, eventually, rises, until
 
 margins = st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=12)
 
@@ -29,7 +29,7 @@ def test_always_is_the_least_margin_of_its_window(values: Any, data: Any) -> Non
         assert (found.margin, values[found.row]) == (min(chosen), min(chosen))
 
 
-def margin_of(found: Decided | None) -> float:
+def margin_of(found: TemporalResult | None) -> float:
     assert found is not None
     return found.margin
 

@@ -17,12 +17,12 @@ import pytest
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.stream.gate import is_welcome
-from orchestrator.stream.pace import Pace
+from orchestrator.stream.pace import RealTimeClock
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
@@ -50,7 +50,7 @@ class Clock:
 
 def test_who_is_early_waits_and_who_is_late_is_counted() -> None:
     clock = Clock()
-    pace = Pace(clock, clock.sleep)
+    pace = RealTimeClock(clock, clock.sleep)
     for step, work in enumerate((0.004, 0.002, 0.025, 0.0, 0.0)):
         pace.on_communication_point(step * 10_000_000)
         clock.now += work

@@ -10,7 +10,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import pytest
 
-from fmus.compiled_batch import Kept, compile_rows
+from fmus.compiled_batch import RecordedSignal, compile_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import scenario_names
@@ -21,7 +21,7 @@ from orchestrator.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_
 from orchestrator.sweep.rows import row_of, why_not_compiled
 from orchestrator.sweep.verdict import OUTCOMES, judge
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.measures import Measure, When
+from orchestrator.verdict.measures import Instants, Measure
 from orchestrator.verdict.summary import summarize
 
 LIMITS = [
@@ -183,10 +183,10 @@ def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
 
 
 def test_the_time_of_an_instant(bind: Any) -> None:
-    when = When("controller.phase", (3,))
+    when = Instants("controller.phase", (3,))
     measures = [
         Measure("time", "vehicle.speed", when),
-        Measure("time", "vehicle.speed", When("controller.phase", (60,))),
+        Measure("time", "vehicle.speed", Instants("controller.phase", (60,))),
     ]
     _, _, job, chunk = bind()
     job = job._replace(measures=[*job.measures, *measures])
@@ -198,7 +198,7 @@ def test_the_time_of_an_instant(bind: Any) -> None:
 
 def test_a_signal_that_does_not_exist() -> None:
     with pytest.raises(KeyError, match=r"vehicle\.sped"):
-        compile_rows(MODELS, None, [Kept("last", "vehicle.sped")])
+        compile_rows(MODELS, None, [RecordedSignal("last", "vehicle.sped")])
 
 
 class Wrong(NamedTuple):
@@ -208,12 +208,12 @@ class Wrong(NamedTuple):
 def test_connected_types_must_agree() -> None:
     models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
     with pytest.raises(TypeError, match=r"prompt: output of controller is float, input of vehicle is int"):
-        compile_rows(models, None, [Kept("last", "vehicle.speed")])
+        compile_rows(models, None, [RecordedSignal("last", "vehicle.speed")])
 
 
 def test_arrays_of_another_shape_are_refused(bind: Any) -> None:
     _, _, job, chunk = bind()
-    rows = compile_rows(MODELS, None, [Kept("last", "vehicle.speed")])
+    rows = compile_rows(MODELS, None, [RecordedSignal("last", "vehicle.speed")])
     parameters, times = arrays(job, chunk)
     none = np.empty((192, 0))
     with pytest.raises(ValueError, match="expected 192 lines of 3 in C order"):
@@ -286,11 +286,11 @@ def test_a_table_of_a_version_with_other_parameters_sets_those_it_names(bind: An
 
 def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
-    parking = When("controller.phase", (2, 3))
+    parking = Instants("controller.phase", (2, 3))
     hows: tuple[Any, ...] = ("last", "largest", "greatest", "smallest", "travel", "first")
     signals = ("vehicle.speed", "vehicle.clearance", "controller.manoeuvres", "vehicle.prompt")
     measures = [Measure(how, signal, when) for how in hows for signal in signals for when in (parking, None)]
-    never = Measure("last", "vehicle.speed", When("controller.phase", (63,)))
+    never = Measure("last", "vehicle.speed", Instants("controller.phase", (63,)))
     job = job._replace(measures=[*job.measures, *measures, never])
     rows = run_batch(job, chunk)
     assert np.isnan(rows[:, -1]).all()

@@ -16,12 +16,12 @@ from orchestrator.sweep.job import chunk_scenario, chunks, make_job
 from orchestrator.sweep.repeat import repeat_row
 from orchestrator.sweep.study.cases import LabelledScenario, design_of, with_samples
 from orchestrator.sweep.study.read_study import read_study
-from orchestrator.sweep.study.study import Derived, Study
+from orchestrator.sweep.study.study import DerivedParameter, Study
 from orchestrator.sweep.sweep import Options, sweep
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
 
 CONTENT = {"name": "cases", "title": "", "description": "", "map": None}
 compiles = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
@@ -83,14 +83,16 @@ def test_a_part_of_a_design_and_every_run_with_every_sample() -> None:
 def study() -> Study:
     shared, design = design_of(cases())
     slow = Requirement(id="slow", signal="vehicle.speed", max_abs=0.7, source="test")
-    tracking = When("controller.phase", (2,))
+    tracking = Instants("controller.phase", (2,))
     return Study(
         shared,
         design,
         CONTENT,
         measures={"first speed": Measure("first", "vehicle.speed", tracking)},
         within={"slow": [slow], "guo": [*library_requirements("guo2015", "final heading")]},
-        derived=Derived({"twice": Number("s", "twice the time")}, lambda columns: {"twice": 2.0 * columns["duration"]}),
+        derived=DerivedParameter(
+            {"twice": Metric("s", "twice the time")}, lambda columns: {"twice": 2.0 * columns["duration"]}
+        ),
     )
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from orchestrator.cosim import compiled_master
+from orchestrator.cosim.algorithm import CoSimulation
 from orchestrator.cosim.compiled_master import CompiledMaster
-from orchestrator.cosim.fmu_slave import FmuSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.local_instance import LocalInstance
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import RunError
@@ -74,7 +74,7 @@ def test_faults_take_the_python_loop(fmus: Any, loops: Any) -> None:
 
 
 def slaves(files: Any, log: Any) -> Any:
-    return [FmuSlave(name, path, {}, log) for name, path in files.items()]
+    return [LocalInstance(name, path, {}, log) for name, path in files.items()]
 
 
 class Seen:
@@ -115,7 +115,10 @@ def break_vehicle(master: Any) -> None:
 
 
 def test_a_refused_step_ends_the_run_with_the_fmus_words(fmus: Any) -> None:
-    expected, found = drive(Master, fmus["native"], break_vehicle), drive(CompiledMaster, fmus["native"], break_vehicle)
+    expected, found = (
+        drive(CoSimulation, fmus["native"], break_vehicle),
+        drive(CompiledMaster, fmus["native"], break_vehicle),
+    )
     assert found == expected
     assert found[0] == [0]
     assert "vehicle failed at 0 s: fmi2DoStep: called at 0.0" in found[1]

@@ -23,7 +23,7 @@ from fmus.compiler import translate
 from modelkit.model import Model
 from modelkit.variables import variables
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.in_process_slave import InProcessSlave
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import CModel
@@ -134,7 +134,7 @@ def test_a_fault_ends_it_with_its_reason(changed: Any, reason: Any) -> None:
     assert (outputs.phase, outputs.reason, outputs.brake_request) == (ValetPhase.FAILED, reason, True)
 
 
-class Twin(InProcessSlave):
+class Twin(ModelInstance):
     """The valet in CPython, and in C beside it, which must not differ."""
 
     def __init__(self, name: Any, model: Any, parameters: Any, folder: Any) -> None:
@@ -163,11 +163,11 @@ def test_a_drive_in_c_has_the_bits_of_cpython(
 
     def make(name: Any, model: Any, parameters: Any) -> Any:
         if model is not VALET:
-            return InProcessSlave(name, model, parameters)
+            return ModelInstance(name, model, parameters)
         twins.append(Twin(name, model, parameters, tmp_path))
         return twins[-1]
 
-    monkeypatch.setattr("orchestrator.session.session.InProcessSlave", make)
+    monkeypatch.setattr("orchestrator.session.session.ModelInstance", make)
     scenario = load_scenario(name, [f"stop_time={stop}", "vehicle.body=kinematic", "controller.plan.at_once=3"])
     ran = run_scenario(scenario)
     assert max(ran.recording.signals["controller.valet.pieces"]) > 0

@@ -11,7 +11,7 @@ frame of the path's tangent).
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.path_law import Deviation, angle_back, deviation
+from controller_fmu.common.path_law import TrackingError, angle_back, deviation
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.rolling_steering import (
     UpcomingStop,
@@ -95,7 +95,12 @@ def track_path(progress: PathProgress, pose: Pose, speed: float, context: Follow
     curvature = reference_at(progress.path, progress.segment, soon, context).curvature
     lateral = _recoverable(error.lateral - here.lateral, curvature, context)
     angle = angle_back(
-        Deviation(lateral, error.heading - here.heading), curvature, direction, law.k1, law.k2, context.car.wheelbase
+        TrackingError(lateral, error.heading - here.heading),
+        curvature,
+        direction,
+        law.k1,
+        law.k2,
+        context.car.wheelbase,
     )
     upcoming = upcoming_stop(progress.path, progress.segment, remaining, context)
     if steers_for_next(upcoming, context):

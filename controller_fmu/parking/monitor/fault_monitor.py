@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from controller_fmu.common.monitor import is_unmoved, is_usable_input
 from controller_fmu.common.params import LimitParams
-from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason, SensedWithFault
 from modelkit.vocabulary import Pose
 
@@ -31,7 +31,7 @@ class FaultClocks(NamedTuple):
     frozen: int = 0
     blocked: int = 0
     running: int = 0
-    steering: SteeringWatch = SteeringWatch()
+    steering: SteeringMonitorState = SteeringMonitorState()
     pose: Pose = Pose()
 
 

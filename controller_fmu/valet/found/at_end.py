@@ -1,7 +1,7 @@
 """At the end of a way into a slot that was found: is the car in its place, and what do its sides hear of it?"""
 
 from controller_fmu.common.external_slot import SlotKind
-from controller_fmu.common.sensors import is_told_anew
+from controller_fmu.common.sensors import is_new_sample
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
@@ -24,7 +24,7 @@ LAST_CORRECTIONS = 7
 
 def listened_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int) -> ValetState:
     """Return the valet that has listened to what is beside it at the end of its way, where it is put right by that."""
-    told_anew = is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
+    told_anew = is_new_sample(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
     if not told_anew or state.beside.cycles >= CYCLES:
         return state
     beside = hear_beside(state.beside, inputs, params)

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.external_slot import ExternalSlot, SlotKind
-from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_new_sample, sensor_at
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, lay_around
@@ -75,7 +75,7 @@ def search(store: PlanStore, state: Search, inputs: ValetInput, params: ValetPar
     speed = abs(inputs.measured_speed)
     clock = state.clock_ns + dt_ns
     state = state._replace(clock_ns=clock, way=state.way + speed * dt_ns * 1e-9)
-    if not is_told_anew(clock, dt_ns, params.car.ultrasonic.cycle) or speed < SLOWEST:
+    if not is_new_sample(clock, dt_ns, params.car.ultrasonic.cycle) or speed < SLOWEST:
         return state
     right = _hear(store, state.right, RIGHT, RIGHT_SENSOR, inputs, params)
     left = _hear(store, state.left, LEFT, LEFT_SENSOR, inputs, params)

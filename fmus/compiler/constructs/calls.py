@@ -80,7 +80,7 @@ def invoke(
     return _result(body, made, made.result, [_pass_argument(body, made, *pair) for pair in enumerate(values)])
 
 
-class Given(NamedTuple):
+class Argument(NamedTuple):
     """An argument of a call."""
 
     parameter: Parameter
@@ -88,15 +88,15 @@ class Given(NamedTuple):
     text: str
 
 
-def _pass_argument(body: FunctionBody, made: Instance, number: int, value: Value) -> Given:
+def _pass_argument(body: FunctionBody, made: Instance, number: int, value: Value) -> Argument:
     parameter = made.parameters[number]
     if made.changed is not None and number == made.changed.parameter:
-        return Given(parameter, value, place_of(value).text if value.place else "")
+        return Argument(parameter, value, place_of(value).text if value.place else "")
     text = address(body, value, parameter.name) if parameter.by_pointer else text_of(body, value, parameter.name)
-    return Given(parameter, value, text)
+    return Argument(parameter, value, text)
 
 
-def _result(body: FunctionBody, made: Instance, kind: Kind, given: list[Given]) -> Value:
+def _result(body: FunctionBody, made: Instance, kind: Kind, given: list[Argument]) -> Value:
     """Return what a function gives: an expression, or what it writes to pointers."""
     if not made.outs and made.changed is None:
         return Value(kind, f"{made.name}({', '.join(item.text for item in given)})")
@@ -128,7 +128,7 @@ def _result(body: FunctionBody, made: Instance, kind: Kind, given: list[Given]) 
     return replace(common, fill=fill, fill_items=fill_items, changes=changes)
 
 
-def _changing(body: FunctionBody, changed: InPlace, given: list[Given], place: Place) -> list[str]:
+def _changing(body: FunctionBody, changed: InPlace, given: list[Argument], place: Place) -> list[str]:
     """Return the arguments of a call that changes what lies at ``place``; what else points there is copied before."""
     own = given[changed.parameter].value
     there = is_at(body, own, place)

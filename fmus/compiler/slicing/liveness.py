@@ -8,7 +8,7 @@ from typing import Any
 
 from fmus.compiler.slicing.code_kinds import CodeKinds, Scope, fields_along, has_open
 from fmus.compiler.source.bindings import Bindings, bindings
-from fmus.compiler.source.discovery import Discovery
+from fmus.compiler.source.discovery import CallGraph
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.types import Kind, Mixed, Scalar, Struct, fields_of, is_named_tuple, parts, whole_of
 from fmus.compiler.source.writers import Writers
@@ -22,7 +22,7 @@ MAX_ROUNDS = 1000
 class Solver(CodeKinds):
     """The fixed point: live fields, variables, parameters, and items of results."""
 
-    def __init__(self, library: Library, found: Discovery) -> None:
+    def __init__(self, library: Library, found: CallGraph) -> None:
         super().__init__(library)
         self.found = found
         self.fields: set[tuple[Any, str]] = set()

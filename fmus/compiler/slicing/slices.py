@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from fmus.compiler.slicing.liveness import ALL_ITEMS, Solver
 from fmus.compiler.slicing.rewriting import DeadValue, Rewriter
-from fmus.compiler.source.discovery import Discovery
+from fmus.compiler.source.discovery import CallGraph
 from fmus.compiler.source.reading import Library
 
 __all__ = ["DeadValue", "Slice", "SliceResult", "SlicedLibrary", "slice_program"]
@@ -51,7 +51,7 @@ def slice_program(
     ``outputs`` is the NamedTuple of the outputs, ``types`` are those of the model's interface.
     """
     roots = list(roots)
-    solver = Solver(library, Discovery(library, roots, types))
+    solver = Solver(library, CallGraph(library, roots, types))
     for name in live:
         solver.need_output(outputs, name)
     for root in roots:

@@ -4,7 +4,7 @@ import ast
 from typing import NamedTuple
 
 
-class Refusal(NamedTuple):
+class Diagnostic(NamedTuple):
     """One construct that the translator cannot prove equal in C."""
 
     file: str
@@ -16,10 +16,10 @@ class Refusal(NamedTuple):
         return f"{self.file}:{self.line}: {self.what}: {self.advice}"
 
 
-class Refused(TypeError):  # noqa: N818
+class UnsupportedError(TypeError):
     """A model that cannot be translated, with everything that stands in the way."""
 
-    def __init__(self, refusals: list[Refusal]) -> None:
+    def __init__(self, refusals: list[Diagnostic]) -> None:
         self.refusals = sorted(set(refusals))
         super().__init__("\n".join(str(item) for item in self.refusals))
 

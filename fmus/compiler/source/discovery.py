@@ -14,7 +14,7 @@ from fmus.compiler.source.resolve import static
 from fmus.compiler.source.types import NoKindError, hints_of, is_named_tuple, whole_of
 
 
-class Discovery:
+class CallGraph:
     """Everything reached; in the order found, which does not depend on anything but the text of the model."""
 
     def __init__(self, library: Library, roots: Iterable[FunctionType], types: Iterable[Any]) -> None:

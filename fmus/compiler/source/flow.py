@@ -10,7 +10,7 @@ State = frozenset[str] | None
 """The names that are certainly bound; None: this place is never reached."""
 
 
-class Flow:
+class DefiniteAssignment:
     """One walk through a function in the order it runs; ``faults`` holds what is wrong."""
 
     def __init__(

@@ -8,7 +8,7 @@ from typing import Any
 
 from fmus.compiler.source.alias_analysis import aliases_of
 from fmus.compiler.source.diagnostics import CannotError
-from fmus.compiler.source.flow import Flow
+from fmus.compiler.source.flow import DefiniteAssignment
 from fmus.compiler.source.types import NOTHING, Array, Kind, Mixed, Open, Struct, is_store
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.in_place import InPlace, in_place
@@ -86,7 +86,7 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
     caller, program.caller = program.caller, made
     body = FunctionBody(program, made.function, made.node)
     body.result, body.made = result, made
-    for fault in Flow(made.node, kinds, body.bindings.local, body.number, result == NOTHING).faults:
+    for fault in DefiniteAssignment(made.node, kinds, body.bindings.local, body.number, result == NOTHING).faults:
         body.refuse(fault, made.node)
     with body.frame(()):
         body.begin_statement()

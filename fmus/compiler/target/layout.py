@@ -7,7 +7,7 @@ from typing import Any
 
 MAX_LINE_LENGTH = 120
 INDENT = "    "
-BREAKS = ((", ", 2, 0), (" && ", 1, 1), (" || ", 1, 1), (" ? ", 1, 1), (" : ", 1, 1), (" = ", 3, 3)) + tuple(
+LINE_BREAKS = ((", ", 2, 0), (" && ", 1, 1), (" || ", 1, 1), (" ? ", 1, 1), (" : ", 1, 1), (" = ", 3, 3)) + tuple(
     (f" {sign} ", 1, cost) for cost, signs in ((3, "+-"), (4, "*/")) for sign in signs
 )
 """Where a line may be broken: at which text, how many characters of it stay before the break, and how ugly it is."""
@@ -65,7 +65,7 @@ def _best_break(text: str, start: int) -> int | None:
         character = text[place]
         depth += (character in "([{") - (character in ")]}")
         if place > start + 8:
-            for mark, kept, cost in BREAKS:
+            for mark, kept, cost in LINE_BREAKS:
                 if text.startswith(mark, place) and place + kept <= MAX_LINE_LENGTH:
                     rank = (depth * 10 + cost - 0.05 * (place - start), -place)
                     if best is None or rank < best:

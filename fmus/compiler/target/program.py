@@ -6,8 +6,8 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.source.bindings import Bindings, bindings
-from fmus.compiler.source.diagnostics import CannotError, Refusal
-from fmus.compiler.source.discovery import Discovery
+from fmus.compiler.source.diagnostics import CannotError, Diagnostic
+from fmus.compiler.source.discovery import CallGraph
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.resolve import Static
 from fmus.compiler.source.types import (
@@ -56,11 +56,11 @@ class Program:
         library: Library | None = None,
     ) -> None:
         self.library = library or Library()
-        self.refusals: list[Refusal] = []
+        self.refusals: list[Diagnostic] = []
         entries = [f"{name}_{entry}" for name in models for entry in ("defaults", "initialize", "step")]
         taken = [*models, *reserved, *entries, *runtime.TEXTS]
         self.names = FileNames(taken)
-        self.found = Discovery(self.library, roots, types)
+        self.found = CallGraph(self.library, roots, types)
         first = [*first_modules(), *(root.__module__ for root in roots)]
         self.modules = self.library.order(first, self.found.modules())
         self.types: dict[Any, str] = {}
@@ -102,7 +102,7 @@ class Program:
         """Note a refusal."""
         line = getattr(node, "lineno", 1)
         file = self.library.module(module).file if module in self.library.modules else module
-        self.refusals.append(Refusal(file, line, what, advice))
+        self.refusals.append(Diagnostic(file, line, what, advice))
 
     def helper(self, name: str) -> str:
         """Return the name of a function of the runtime, which is written from now on."""

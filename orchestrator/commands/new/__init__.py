@@ -30,7 +30,7 @@ PIPELINES = {"github.yml": ".github/workflows/{name}.yml", "gitlab.yml": ".gitla
 """Template -> where the server looks for it."""
 FOR_FMU = "fmu-"
 """Begins the templates of the pipelines that test an FMU."""
-TEMPLATES = Path(__file__).parent / "templates"
+TEMPLATE_FOLDER = Path(__file__).parent / "templates"
 SUFFIX = ".txt"
 RESERVED = ("apa_cosim", "fmus", "modelkit", "orchestrator", "pythonfmu", "vehicle_fmu", "controller_fmu")
 BASE = "guo2015-case4"
@@ -104,7 +104,7 @@ def _package(kind: str, out: Path, name: str) -> int:
     if folder.exists():
         raise BadInput("is there already", file=folder)
     try:
-        for template in sorted((TEMPLATES / kind).glob(f"*{SUFFIX}")):
+        for template in sorted((TEMPLATE_FOLDER / kind).glob(f"*{SUFFIX}")):
             _write(template, folder / template.name.removesuffix(SUFFIX), name)
     except OSError:
         shutil.rmtree(folder, ignore_errors=True)
@@ -118,7 +118,7 @@ def _third_party(arguments: argparse.Namespace) -> dict[str, str]:
     """Return component -> FMU of those that were named; ``--fmu`` is placed by its variables."""
     files = {owner: getattr(arguments, owner) for owner in PACKAGES if getattr(arguments, owner, None)}
     if arguments.fmu:
-        from orchestrator.cosim.description import read_description
+        from orchestrator.cosim.model_description import read_description
         from orchestrator.session.fmu_check import likely_place
         from orchestrator.session.foreign import fmu_of
 
@@ -140,7 +140,7 @@ def _scenario(arguments: argparse.Namespace) -> int:
     elif arguments.scenario:
         raise BadInput("needs --controller, --vehicle or --fmu; a template is complete by itself", key="--scenario")
     else:
-        _write(TEMPLATES / "scenario" / f"scenario.yaml{SUFFIX}", file, name, file=str(file))
+        _write(TEMPLATE_FOLDER / "scenario" / f"scenario.yaml{SUFFIX}", file, name, file=str(file))
         print(f"{file}: a parallel slot\nnext: apa run {file}")
     return 0
 
@@ -176,7 +176,7 @@ def _study(arguments: argparse.Namespace) -> int:
     seen = _relative_path(file.parent, base) if base.endswith((".yaml", ".yml")) else base
     ends = {"left": x - START_RANGE, "right": x + START_RANGE, "low": y - START_RANGE, "high": y + START_RANGE}
     words = {key: f"{value:.6g}" for key, value in {**ends, "heading": heading}.items()}
-    _write(TEMPLATES / "study" / f"study.yaml{SUFFIX}", file, name, file=str(file), scenario=seen, **words)
+    _write(TEMPLATE_FOLDER / "study" / f"study.yaml{SUFFIX}", file, name, file=str(file), scenario=seen, **words)
     print(f"{file}: 24 runs of {base}\nnext: apa sweep {file}")
     return 0
 
@@ -219,7 +219,7 @@ def _write_pipelines(out: Path, name: str, kind: str, **words: str) -> None:
     _check_new(out, name)
     files = {template: out / place.format(name=name) for template, place in PIPELINES.items()}
     for template, file in files.items():
-        _write(TEMPLATES / "ci" / f"{kind}{template}{SUFFIX}", file, name, **words)
+        _write(TEMPLATE_FOLDER / "ci" / f"{kind}{template}{SUFFIX}", file, name, **words)
     print(f"{', '.join(map(str, files.values()))}\nnext: write into them where apa-cosim is installed from")
 
 

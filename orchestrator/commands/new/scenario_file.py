@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.description import ports_of, read_description
-from orchestrator.cosim.slave import Ports
+from orchestrator.cosim.fmu_instance import Ports
+from orchestrator.cosim.model_description import ports_of, read_description
 from orchestrator.foreign.archive import check_archive
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.foreign import fmu_of

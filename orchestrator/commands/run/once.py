@@ -12,8 +12,8 @@ from orchestrator.drawing.seen import overview_of
 from orchestrator.report.results import LIVE, LOG, PICTURE, is_shown, write_page, write_picture, write_summary
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
-from orchestrator.session.foreign import Foreign, foreign_of, load_fitting
-from orchestrator.session.session import Ran
+from orchestrator.session.foreign import ImportedFmus, foreign_of, load_bound_scenario
+from orchestrator.session.session import SimulationResult
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
@@ -32,7 +32,7 @@ class Done(NamedTuple):
 
 def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int:
     """Load the scenario, run, write, print; return the exit code."""
-    scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_of(arguments))
+    scenario, left_out, foreign = load_bound_scenario(arguments.scenario, arguments.set, foreign_of(arguments))
     if left_out:
         say(f"apa: note: parameters that the FMU does not have are left out: {shortly(left_out)}")
     paced = arguments.realtime or arguments.live is not None
@@ -43,7 +43,7 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
 def execute(
     arguments: argparse.Namespace,
     scenario: Scenario,
-    foreign: Foreign,
+    foreign: ImportedFmus,
     chosen: Path | None,
     beside: PictureBeside | None = None,
     realtime: Realtime | None = None,
@@ -81,7 +81,7 @@ def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: 
     print_summary(summary, scenario.title, scenario.expected_outcome)
 
 
-def _write_pages(out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign) -> None:
+def _write_pages(out: Path, ran: SimulationResult, summary: Summary, scenario: Scenario, foreign: ImportedFmus) -> None:
     """Write the page that is driven, and the replay page if there is something to show."""
     with verdict_stands(str(out / LIVE)):
         _write_live(out / LIVE, scenario, foreign)
@@ -89,7 +89,7 @@ def _write_pages(out: Path, ran: Ran, summary: Summary, scenario: Scenario, fore
         write_page(out, ran.recording, summary, ran.lines)
 
 
-def _write_live(path: Path, scenario: Scenario, foreign: Foreign) -> None:
+def _write_live(path: Path, scenario: Scenario, foreign: ImportedFmus) -> None:
     """Write the page on which the scenario is driven; none for somebody else's FMUs, or where nothing compiles C."""
     from fmus.native.web import can_build
 

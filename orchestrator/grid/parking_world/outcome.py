@@ -11,18 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.parking_world.scene import has_bin, overhang_of
 from orchestrator.grid.parkings import GBT
 from orchestrator.sweep.columns import WITHIN
-from orchestrator.sweep.study.study import Columns, Derived
-from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.numbers import Number
+from orchestrator.sweep.study.study import Columns, DerivedParameter
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
 from orchestrator.verdict.outcome import BEYOND
 
 MOVING_SPEED = 0.05
 """A car no faster [m/s] stands."""
-TOUCHING = When("vehicle.contact", (1,))
+TOUCHING = Instants("vehicle.contact", (1,))
 MEASURES = {
     **{f"touched.{axis}": Measure("first", f"vehicle.pose.{axis}", TOUCHING) for axis in ("x", "y", "heading")},
     "touched.speed": Measure("first", "vehicle.speed", TOUCHING),
@@ -43,7 +43,7 @@ ENDS = {
     DRIVER: "touched something while the driver drives",
 }
 """How a run ends, the worst first."""
-COLUMNS = {"valid": Number("1", "1: by the scene alone, the slot has ISO 16787's room for the car, and nothing in it")}
+COLUMNS = {"valid": Metric("1", "1: by the scene alone, the slot has ISO 16787's room for the car, and nothing in it")}
 
 
 def _outcome_columns(columns: Columns) -> Mapping[str, Array]:
@@ -72,4 +72,4 @@ def end_of(row: Mapping[str, Any], valid: bool) -> str:
     return FAILED if row["outcome"] == "failed" else ENDLESS
 
 
-FOUND = Derived(COLUMNS, _outcome_columns, {"end": "how the run ended"})
+FOUND = DerivedParameter(COLUMNS, _outcome_columns, {"end": "how the run ended"})

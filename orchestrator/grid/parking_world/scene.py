@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.parking_world.factors import NONE, PARKED_CARS, RACK, WALL
 from orchestrator.grid.world import scene as world
 from orchestrator.grid.world.factors import NO_SENSOR

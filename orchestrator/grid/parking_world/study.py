@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table as Printed
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import KINDS
 from orchestrator.grid.parking_world.factors import FACTORS
 from orchestrator.grid.parking_world.outcome import (

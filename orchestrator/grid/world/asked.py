@@ -8,18 +8,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from controller_fmu.apa.params import SearchParams
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import WHEEL, WITH_KERB, crosses_slot
 from orchestrator.sweep.study.study import Columns
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.numbers import Metric
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 COLUMNS = {
-    "valid": Number(
+    "valid": Metric(
         "1", "1: the slot is valid for the vehicle, as far as sensors without height information can determine"
     ),
-    "asked": Number("1", "1: the task is feasible: driver, sensors and moving obstacles leave the slot to the vehicle"),
+    "asked": Metric("1", "1: the task is feasible: driver, sensors and moving obstacles leave the slot to the vehicle"),
 }
 HEARD = UltrasonicParams().kerb_height
 """Kerbs lower than this [m] are not heard."""

@@ -10,7 +10,7 @@ import numpy as np
 from controller_fmu.apa.chart import Mode
 from modelkit.geometry import Box, boxes_gap, line_box, outline
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
 from orchestrator.grid.world.asked import COLUMNS, HEARD, feasibility_columns
@@ -18,14 +18,14 @@ from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.scenario.requirements import Requirement, library_requirements
 from orchestrator.sweep.columns import WITHIN
-from orchestrator.sweep.study.study import Columns, Derived, Objective
-from orchestrator.verdict.measures import Measure, When
-from orchestrator.verdict.numbers import Number
+from orchestrator.sweep.study.study import Columns, DerivedParameter, Objective
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
 from orchestrator.verdict.outcome import BEYOND
 from orchestrator.verdict.standing import outline_margin
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
-TOUCHING = When("vehicle.contact", (1,))
+TOUCHING = Instants("vehicle.contact", (1,))
 AXES = ("x", "y", "heading")
 FIRST = {
     **{f"touched.{axis}": f"vehicle.pose.{axis}" for axis in AXES},
@@ -42,10 +42,12 @@ MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
     "parking_time": Measure("last", "controller.apa.parking_time"),
     **{name: Measure("first", signal, TOUCHING) for name, signal in FIRST.items()},
-    "assist.clearance": Measure("smallest", "vehicle.clearance", When("controller.apa.mode", tuple(map(int, DRIVES)))),
+    "assist.clearance": Measure(
+        "smallest", "vehicle.clearance", Instants("controller.apa.mode", tuple(map(int, DRIVES)))
+    ),
     "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
-Judge = Callable[[Mapping[str, Any], "Touched | None"], str]
+Judge = Callable[[Mapping[str, Any], "InitialContact | None"], str]
 MEASURES_OF_ANY = {
     **{f"touched.{axis}": Measure("first", f"vehicle.pose.{axis}", TOUCHING) for axis in AXES},
     "touched.speed": Measure("first", "vehicle.speed", TOUCHING),
@@ -96,7 +98,7 @@ def _plain(values: Any) -> list[Any]:
     return list(np.asarray(values).tolist())
 
 
-class Touched(NamedTuple):
+class InitialContact(NamedTuple):
     """What a car has touched first."""
 
     name: str
@@ -104,7 +106,7 @@ class Touched(NamedTuple):
     """It would have touched the car one exchange before, too: it came, the car did not bring it about."""
 
 
-def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
+def end_of(row: Mapping[str, Any], touched: InitialContact | None) -> str:
     """Return how a run ended, one of ``ENDS``."""
     if touched is not None:
         driven = row["touched.mode"] in DRIVES and not row["touched.takeover"]
@@ -117,7 +119,7 @@ def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
     return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
 
 
-def end_of_any(row: Mapping[str, Any], touched: Touched | None) -> str:
+def end_of_any(row: Mapping[str, Any], touched: InitialContact | None) -> str:
     """Return how a run of any system ended, one of ``ENDS``: who steers says who drives, the outcome what it claims."""
     if touched is not None:
         low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
@@ -165,19 +167,19 @@ def _neighbour_travel(row: Mapping[str, Any]) -> float:
     return float(max(0.0, row["duration"] - row["mover_at"]) * row["mover_speed"])
 
 
-def first_contact(row: Mapping[str, Any]) -> Touched:
+def first_contact(row: Mapping[str, Any]) -> InitialContact:
     """Return what the car is nearest to when it touches something for the first time."""
     pose = Pose(*(row[f"touched.{axis}"] for axis in AXES))
     things = _things(row)
     name = min(things, key=lambda name: _gap(row, pose, *things[name]))
     way = row["touched.speed"] * row["step"]
     before = Pose(pose.x - way * math.cos(pose.heading), pose.y - way * math.sin(pose.heading), pose.heading)
-    return Touched(
+    return InitialContact(
         name, name in MOVABLE_OBSTACLES and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0
     )
 
 
-def is_driven_into(row: Mapping[str, Any], touched: Touched | None) -> bool:
+def is_driven_into(row: Mapping[str, Any], touched: InitialContact | None) -> bool:
     """Return whether somebody who moves has touched a car that stands: it could have done no more."""
     if touched is None or touched.name not in MOVABLE_OBSTACLES:
         return False
@@ -253,8 +255,8 @@ GOALS = (
     Objective("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
     Objective("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
-INTO = {"driven_into": Number("1", "1: contact at standstill caused by a moving obstacle")}
-FOUND = Derived(
+INTO = {"driven_into": Metric("1", "1: contact at standstill caused by a moving obstacle")}
+FOUND = DerivedParameter(
     {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
 )
 FOUND_BY_ANY = FOUND._replace(make=_ends_of_any)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import Car, car_length
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import BODY, CARS, ISO
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY, STEPS
 from orchestrator.scenario.car import car_parameters

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table as Printed
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
@@ -45,11 +45,11 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-APA = 5
+APA_SYSTEM = 5
 """The number of ``controller.system`` of the parking assist."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA) -> Study:
+def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYSTEM) -> Study:
     """Return the world; ``mild``: 1 for half the ranges; ``system``: number of ``controller.system``, same rows."""
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
@@ -66,13 +66,13 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA) -> 
     design = Design(fields(), world.values(shares, seeds), seeds, world.values_by_name(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
-    if system != APA:
+    if system != APA_SYSTEM:
         content |= {"name": f"{content['name']}-{system}", "system": system}
         return Study(shared, design, content, seeded, MEASURES_OF_ANY, within, FOUND_BY_ANY, world)
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
 
-def scenario(system: int = APA) -> Scenario:
+def scenario(system: int = APA_SYSTEM) -> Scenario:
     """Return what all runs share; the system is told neither slot nor target."""
     return Scenario(
         name="apa-world",

@@ -29,17 +29,17 @@ def ssp_scenario(path: Path) -> dict[str, Any]:
 
 
 def ssp_system(path: Path) -> dict[str, Any]:
-    """Return slaves and connections of the .ssp at ``path``, its FMUs unpacked. Raises ``BadInput``."""
+    """Return instances and connections of the .ssp at ``path``, its FMUs unpacked. Raises ``BadInput``."""
     from fmus.cache_paths import DIST
 
     system = _read(path)
     folder = DIST / "ssp" / hashlib.sha256(path.read_bytes()).hexdigest()[:24]
-    slaves: dict[str, Any] = {name: "none" for name in MODELS if name not in system.components}
+    instances: dict[str, Any] = {name: "none" for name in MODELS if name not in system.components}
     for name, source in system.components.items():
         file = folder / f"{name}.fmu"
         if not file.is_file():
             write_whole(file, _fmu(path, source))
-        slaves[name] = {
+        instances[name] = {
             "file": str(file),
             "parameters": system.parameters.get(name, {}),
             "units": system.units.get(name, {}),
@@ -48,7 +48,7 @@ def ssp_system(path: Path) -> dict[str, Any]:
         f"{owner}.{name}": {"value": text} for owner, given in system.inputs.items() for name, text in given.items()
     }
     return {
-        "components": slaves,
+        "components": instances,
         "connections": {**as_written(system), **values},
         "by_name": False,
         "units": {

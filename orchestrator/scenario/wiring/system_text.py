@@ -1,4 +1,4 @@
-"""A system as a scenario states it: which slaves, from which files, what feeds what, and what plays which role."""
+"""A system as a scenario states it: which instances, from which files, what feeds what, and what plays which role."""
 
 import re
 from collections.abc import Container, Iterator, Mapping
@@ -17,7 +17,7 @@ MAX_COMMAS = 8
 """No name has more of them."""
 SLAVE = re.compile(r"^[A-Za-z_][A-Za-z0-9_]*$")
 NO_FILE = "none"
-"""Written for a slave that the system does not have."""
+"""Written for an instance that the system does not have."""
 ROLES: dict[str, tuple[str, ...]] = {
     "pose": ("vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"),
     "speed": ("vehicle.speed",),
@@ -94,8 +94,8 @@ class _SystemPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
 
-class SlaveEntry(_SystemPart):
-    """One slave: the FMU, or model, it is, and its parameters."""
+class InstanceEntry(_SystemPart):
+    """One instance: the FMU, or model, it is, and its parameters."""
 
     file: str = ""
     """An .fmu or ``model.py:MODEL`` beside the scenario; empty: ours of this name; ``none``: there is none."""
@@ -175,8 +175,8 @@ class Feed(_SystemPart):
         return self
 
 
-def _feeds(written: Any, slaves: frozenset[str]) -> Any:
-    """Return what is written as a mapping for :class:`Feed`: a text that names a slave is a signal."""
+def _feeds(written: Any, instances: frozenset[str]) -> Any:
+    """Return what is written as a mapping for :class:`Feed`: a text that names an instance is a signal."""
     if isinstance(written, Mapping):
         given = dict(written)
         if isinstance(given.get("from"), list):
@@ -184,7 +184,7 @@ def _feeds(written: Any, slaves: frozenset[str]) -> Any:
         return given
     if isinstance(written, list):
         return {"from": ", ".join(map(str, written))}
-    is_signal = isinstance(written, str) and written.strip(' -"').partition(".")[0] in slaves
+    is_signal = isinstance(written, str) and written.strip(' -"').partition(".")[0] in instances
     return {"from": written} if is_signal else {"value": written}
 
 
@@ -194,14 +194,14 @@ def _entry(written: Any) -> Any:
     return {"file": written} if isinstance(written, str) else written
 
 
-Entry = Annotated[SlaveEntry, BeforeValidator(_entry)]
+Entry = Annotated[InstanceEntry, BeforeValidator(_entry)]
 
 
 class SystemText(_SystemPart):
-    """Slaves, and what is connected; outputs and inputs of the same name are connected without a word."""
+    """Instances, and what is connected; outputs and inputs of the same name are connected without a word."""
 
     ssp: str = ""
-    """A system made elsewhere, whose slaves, connections and parameters are taken over."""
+    """A system made elsewhere, whose instances, connections and parameters are taken over."""
     components: dict[str, Entry] = {}
     """Name -> FMU. ``vehicle`` and ``controller`` are ours if nothing else is said."""
     connections: dict[str, Feed] = {}
@@ -224,8 +224,8 @@ class SystemText(_SystemPart):
     def _normalise(cls, given: Any) -> Any:
         if not isinstance(given, Mapping):
             return given
-        slaves = given.get("components")
-        names = frozenset({*MODELS, *(map(str, slaves) if isinstance(slaves, Mapping) else ())})
+        instances = given.get("components")
+        names = frozenset({*MODELS, *(map(str, instances) if isinstance(instances, Mapping) else ())})
         made = dict(given)
         for key in ("connections", "roles"):
             section = made.get(key)
@@ -237,9 +237,9 @@ class SystemText(_SystemPart):
     def _names(self) -> "SystemText":
         for name in self.components:
             if SLAVE.match(name) is None:
-                raise BadInput("is no name for a slave: write letters, digits and _", key=f"slaves.{name}")
+                raise BadInput("is no name for an instance: write letters, digits and _", key=f"components.{name}")
         if not self.places:
-            raise BadInput("there is no slave left", key="components")
+            raise BadInput("there is no instance left", key="components")
         for feed in (*self.connections.values(), *self.roles.values()):
             for frame in (feed.into, feed.out_of):
                 if frame is not None and frame not in self.frames:
@@ -248,11 +248,11 @@ class SystemText(_SystemPart):
         return self
 
     def files(self) -> dict[str, str]:
-        """Return slave -> what its file is called, for those that are not ours."""
+        """Return instance -> what its file is called, for those that are not ours."""
         return {name: item.file for name, item in self.components.items() if item.file and item.file != NO_FILE}
 
     @property
     def places(self) -> list[str]:
-        """Return the names of the slaves in their order: vehicle and controller first, as far as they are there."""
+        """Return the names of the instances in their order: vehicle and controller first, as far as they are there."""
         gone = {name for name, item in self.components.items() if item.file == NO_FILE}
         return [name for name in dict.fromkeys([*MODELS, *self.components]) if name not in gone]

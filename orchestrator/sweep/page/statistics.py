@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.scenario import DONE, SUCCESS, Scenario
 from orchestrator.sweep.study.study_file import Axes
 from orchestrator.sweep.table import Table

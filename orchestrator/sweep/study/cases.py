@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from modelkit.variables import variables
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import SCENARIO_FIELDS, TRUE_FIELDS, TRUE_OWNERS, Field, find_field

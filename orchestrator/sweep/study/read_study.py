@@ -8,7 +8,7 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.load_scenario import requirements_of
 from orchestrator.scenario.requirements import Requirement
-from orchestrator.session.foreign import Foreign, load_fitting
+from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
 from orchestrator.sweep.fields import SCENARIO_FIELDS
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.sampling import make_design
@@ -53,7 +53,7 @@ def _with_samples(runs: Runs, n: Any) -> Runs:
 def bind(file: StudyFile) -> Study:
     """Return the study that a file means. Raises ``BadInput``."""
     sets = [f"{key}={value}" for key, value in file.set.items()]
-    scenario = load_fitting(file.scenario, sets, Foreign()).scenario
+    scenario = load_bound_scenario(file.scenario, sets, ImportedFmus()).scenario
     design = make_design(file, scenario)
     content = file.model_dump(mode="json", by_alias=True)
     measures = {
@@ -70,7 +70,7 @@ def bind(file: StudyFile) -> Study:
 
 def _seed_parameters(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
     """Return the parameters that take the run's seed: those that follow the scenario's."""
-    probed = load_fitting(scenario, [*sets, f"seed={PROBE_SEED}"], Foreign()).scenario
+    probed = load_bound_scenario(scenario, [*sets, f"seed={PROBE_SEED}"], ImportedFmus()).scenario
     varied = {field.key for field in design.fields}
     return [
         (owner, variable.name, place)

@@ -13,12 +13,12 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from modelkit.variables import Variable
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import LONGEST_STEP, Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
-from orchestrator.sweep.study.study_file import MOST_RUNS, Range, Samples, Spread, StudyFile
+from orchestrator.sweep.study.study_file import MOST_RUNS, Distribution, Range, Samples, StudyFile
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number, scalar
 
@@ -70,7 +70,7 @@ def _check_size(study: StudyFile) -> None:
 
 
 def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None:
-    """Raise ``BadInput`` if a run would end before its first step, or a slave's own step is too long."""
+    """Raise ``BadInput`` if a run would end before its first step, or an instance's own step is too long."""
     columns = {field.key: values[:, place] for place, field in enumerate(fields) if field.owner == "scenario"}
     steps, stops = columns.get("step", scenario.step), columns.get("stop_time", scenario.longest)
     if np.any(stops < steps):
@@ -117,7 +117,7 @@ def _sample_columns(samples: Samples, latin: bool, seed: list[int], scenario: Sc
     return columns
 
 
-def _quantiles(chances: Array, spread: Spread, variable: Variable, key: str) -> Array:
+def _quantiles(chances: Array, spread: Distribution, variable: Variable, key: str) -> Array:
     """Return the values of a distribution at ``chances`` in [0, 1)."""
     unit = variable.signal.unit
     if spread.choice is not None:

@@ -4,22 +4,22 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.space import Space
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.numbers import Metric
 
 Columns = Mapping[str, Any]
 """Columns of a table by name, as arrays."""
 
 
-class Derived(NamedTuple):
+class DerivedParameter(NamedTuple):
     """Columns that a study makes of the others."""
 
-    columns: Mapping[str, Number]
+    columns: Mapping[str, Metric]
     make: Callable[[Columns], Mapping[str, Array]]
     """Called with labels, numbers and measures of some runs."""
     words: Mapping[str, str] = MappingProxyType({})
@@ -38,7 +38,7 @@ class Objective(NamedTuple):
 
 
 NONE: Mapping[str, Any] = MappingProxyType({})
-NOTHING = Derived({}, lambda columns: {})
+NOTHING = DerivedParameter({}, lambda columns: {})
 
 
 class Study(NamedTuple):
@@ -55,7 +55,7 @@ class Study(NamedTuple):
     """Kept beside those of the summary, by the names of their columns."""
     within: Mapping[str, list[Requirement]] = NONE
     """Sets of limits that do not decide about the outcome: each is a column ``within NAME``."""
-    derived: Derived = NOTHING
+    derived: DerivedParameter = NOTHING
     space: Space | None = None
     """What its numbers are made of, where a search may choose others."""
     goals: Sequence[Objective] = ()

@@ -27,7 +27,7 @@ class Range(_StudyPart):
     """Number of values."""
 
 
-class Spread(_StudyPart):
+class Distribution(_StudyPart):
     """A distribution: exactly one of the three."""
 
     uniform: tuple[float | str, float | str] | None = None
@@ -38,7 +38,7 @@ class Spread(_StudyPart):
     """Any of these, equally likely."""
 
     @model_validator(mode="after")
-    def _one(self) -> "Spread":
+    def _one(self) -> "Distribution":
         if sum(item is not None for item in (self.uniform, self.normal, self.choice)) != 1:
             raise BadInput("expected exactly one of uniform, normal and choice")
         return self
@@ -48,7 +48,7 @@ class Samples(_StudyPart):
     """``n`` samples of some parameters: ``{n: 100, vehicle.start.y: {uniform: [-0.1, 0.1]}, ...}``."""
 
     n: int = Field(ge=1, le=MOST_RUNS)
-    spreads: dict[str, Spread] = {}
+    spreads: dict[str, Distribution] = {}
 
     @model_validator(mode="before")
     @classmethod

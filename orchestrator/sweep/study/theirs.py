@@ -5,23 +5,23 @@ from pathlib import Path
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.description import ports_of, read_description
+from orchestrator.cosim.model_description import ports_of, read_description
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Files, Foreign, parameters_of, sha256_of
-from orchestrator.session.session import Messages, make_slaves
-from orchestrator.system.assemble import assemble
+from orchestrator.session.foreign import Files, ImportedFmus, parameters_of, sha256_of
+from orchestrator.session.session import Messages, make_instances
+from orchestrator.system.assemble import elaborate
 
 
 def files_of(scenario: Scenario) -> Files:
-    """Return slave -> FMU of somebody else's in the system of ``scenario``. Raises ``BadInput``."""
-    return Foreign().with_system(scenario.system).files
+    """Return instance -> FMU of somebody else's in the system of ``scenario``. Raises ``BadInput``."""
+    return ImportedFmus().with_system(scenario.system).files
 
 
 def parameters_known(scenario: Scenario) -> dict[str, Sequence[Variable]]:
-    """Return slave -> its parameters: of our models, and of the FMUs that are in their place or beside them."""
+    """Return instance -> its parameters: of our models, and of the FMUs that are in their place or beside them."""
     ours = {owner: variables(model.params) for owner, model in scenario.models.items()}
-    return {**ours, **{slave: parameters_of(path, slave) for slave, path in files_of(scenario).items()}}
+    return {**ours, **{instance: parameters_of(path, instance) for instance, path in files_of(scenario).items()}}
 
 
 def _own_output(scenario: Scenario, signal: str) -> Variable | None:
@@ -40,7 +40,7 @@ def signals_of(scenario: Scenario) -> dict[str, Signal]:
     }
     return {
         **ours,
-        **{name: item for slave, path in files_of(scenario).items() for name, item in _fmu_signals(slave, path)},
+        **{name: item for instance, path in files_of(scenario).items() for name, item in _fmu_signals(instance, path)},
     }
 
 
@@ -51,25 +51,27 @@ def declare_signals(scenario: Scenario, *signals: str) -> list[Variable | None]:
     """
     if scenario.system is None:
         return [_own_output(scenario, signal) for signal in signals]
-    slaves = make_slaves(scenario, None, Messages())
+    instances = make_instances(scenario, None, Messages())
     try:
-        ports = {slave.name: (slave.outputs, slave.inputs) for slave in assemble(scenario, slaves).slaves}
+        ports = {
+            instance.name: (instance.outputs, instance.inputs) for instance in elaborate(scenario, instances).instances
+        }
     finally:
-        for slave in slaves:
-            slave.close()
+        for instance in instances:
+            instance.close()
     names = [(ports.get(signal.partition(".")[0], ()), signal.partition(".")[2]) for signal in signals]
     return [
-        next((part.variables[part.index[name]] for part in of_slave if name in part.index), None)
-        for of_slave, name in names
+        next((part.variables[part.index[name]] for part in of_instance if name in part.index), None)
+        for of_instance, name in names
     ]
 
 
 def hashes_of(scenario: Scenario) -> dict[str, str]:
-    """Return slave -> SHA-256 of its FMU: runs with another are runs of another study."""
-    return {slave: sha256_of(path) for slave, path in files_of(scenario).items()}
+    """Return instance -> SHA-256 of its FMU: runs with another are runs of another study."""
+    return {instance: sha256_of(path) for instance, path in files_of(scenario).items()}
 
 
-def _fmu_signals(slave: str, path: Path) -> list[tuple[str, Signal]]:
+def _fmu_signals(instance: str, path: Path) -> list[tuple[str, Signal]]:
     description = read_description(path)
-    ports = [ports_of(description, causality, MODELS.get(slave), path) for causality in ("input", "output")]
-    return [(f"{slave}.{item.name}", item.signal) for part in ports for item in part.variables]
+    ports = [ports_of(description, causality, MODELS.get(instance), path) for causality in ("input", "output")]
+    return [(f"{instance}.{item.name}", item.signal) for part in ports for item in part.variables]

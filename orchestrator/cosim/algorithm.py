@@ -1,7 +1,7 @@
 """Jacobi master on integer nanoseconds: fixed step, integer multi-rate, observers and manipulators.
 
 At every exchange: read all outputs, write all inputs, then step all. One exchange takes place in
-Initialization Mode. A slave with decimation n is stepped every n-th time by n communication steps;
+Initialization Mode. An instance with decimation n is stepped every n-th time by n communication steps;
 its outputs are read, and its inputs written, only at those instants. No step goes beyond the stop time: the
 last one ends there, and all outputs are read then.
 """
@@ -10,37 +10,37 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from orchestrator.cosim.connections import Connection, connect
-from orchestrator.cosim.slave import Array, Indices, Slave, all_values
+from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices, all_values
 
 
 class Observer(Protocol):
     """Sees every exchange, changes nothing: log, recording, progress bar."""
 
     def on_communication_point(self, t_ns: int) -> None:
-        """Look at the slaves' arrays as they are at ``t_ns``."""
+        """Look at the instances' arrays as they are at ``t_ns``."""
 
-    def on_terminate(self, end: "End") -> None:
+    def on_terminate(self, end: "Termination") -> None:
         """The run is over; called once, whatever the reason."""
 
 
 class Manipulator(Protocol):
-    """Changes inputs of one slave after an exchange: fault injection."""
+    """Changes inputs of one instance after an exchange: fault injection."""
 
-    slave: int
-    """Number of the slave whose inputs are changed."""
+    instance: int
+    """Number of the instance whose inputs are changed."""
 
     def apply(self, t_ns: int) -> None:
-        """Change the slave's input values in place."""
+        """Change the instance's input values in place."""
 
 
-class Ending(Protocol):
+class StopCondition(Protocol):
     """Says when the run is over before its stop time."""
 
     def stop_reason(self, t_ns: int) -> str:
         """Return the reason to end now, or an empty string."""
 
 
-class End(NamedTuple):
+class Termination(NamedTuple):
     """Why and when a run ended."""
 
     reason: str
@@ -61,11 +61,11 @@ Link = tuple[Array, Indices, Array, Indices, Callable[[Array], Array] | None]
 class _Instant(NamedTuple):
     """What happens at one phase of the multi-rate cycle."""
 
-    due: list[Slave]
+    due: list[FmuInstance]
     links: list[Link]
-    """Every connection into a slave that is due."""
+    """Every connection into an instance that is due."""
     faults: list[Manipulator]
-    steps: list[tuple[Slave, int]]
+    steps: list[tuple[FmuInstance, int]]
 
 
 def last_exchange(step_ns: int, stop_ns: int) -> int:
@@ -73,46 +73,46 @@ def last_exchange(step_ns: int, stop_ns: int) -> int:
     return -(-stop_ns // step_ns)
 
 
-class Master:
+class CoSimulation:
     """Everything that takes part in one run."""
 
     def __init__(
         self,
-        slaves: list[Slave],
+        instances: list[FmuInstance],
         step_ns: int,
         stop_ns: int,
         decimation: dict[str, int] | None = None,
         connections: list[Connection] | None = None,
     ) -> None:
-        self.slaves = slaves
-        self.values = all_values(slaves)
+        self.instances = instances
+        self.values = all_values(instances)
         """All inputs and outputs in one array."""
         self.step_ns = step_ns
         self.stop_ns = stop_ns
-        self.decimation = [(decimation or {}).get(slave.name, 1) for slave in slaves]
-        self.connections = connect(slaves) if connections is None else connections
+        self.decimation = [(decimation or {}).get(instance.name, 1) for instance in instances]
+        self.connections = connect(instances) if connections is None else connections
         """By equal names if nothing else is said."""
         self.manipulators: list[Manipulator] = []
         self.observers: list[Observer] = []
-        self.endings: list[Ending] = []
+        self.endings: list[StopCondition] = []
         self.interrupt = Interrupt()
 
     def initialize(self) -> None:
         """Enter initialization, exchange once, leave it: time is zero."""
-        for slave in self.slaves:
-            slave.initialize(self.stop_ns)
-        for slave in self.slaves:
-            slave.fetch_outputs()
+        for instance in self.instances:
+            instance.initialize(self.stop_ns)
+        for instance in self.instances:
+            instance.fetch_outputs()
         for link in self.connections:
             target, target_places, source, source_places, convert = self._link(link)
             given = source[source_places]
             target[target_places] = given if convert is None else convert(given)
-        for slave in self.slaves:
-            slave.send_inputs()
-        for slave in self.slaves:
-            slave.start()
+        for instance in self.instances:
+            instance.send_inputs()
+        for instance in self.instances:
+            instance.start()
 
-    def run(self) -> End:
+    def run(self) -> Termination:
         """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
         instants: dict[tuple[bool, ...], _Instant] = {}
         last = last_exchange(self.step_ns, self.stop_ns)
@@ -123,8 +123,8 @@ class Master:
             if pattern not in instants:
                 instants[pattern] = self._instant(pattern)
             due, links, faults, steps = instants[pattern]
-            for slave in due:
-                slave.fetch_outputs()
+            for instance in due:
+                instance.fetch_outputs()
             for target, target_places, source, source_places, convert in links:
                 given = source[source_places]
                 target[target_places] = given if convert is None else convert(given)
@@ -134,22 +134,22 @@ class Master:
                 observer.on_communication_point(t_ns)
             reason = self._over(t_ns, count == last)
             if reason:
-                return End(reason, t_ns)
-            for slave in due:
-                slave.send_inputs()
-            for slave, dt_ns in steps:
-                slave.step(t_ns, min(dt_ns, self.stop_ns - t_ns))
+                return Termination(reason, t_ns)
+            for instance in due:
+                instance.send_inputs()
+            for instance, dt_ns in steps:
+                instance.step(t_ns, min(dt_ns, self.stop_ns - t_ns))
             count += 1
 
-    def finish(self, end: End) -> None:
+    def finish(self, end: Termination) -> None:
         """Tell the observers."""
         for observer in self.observers:
             observer.on_terminate(end)
 
     def free(self) -> None:
-        """Free the slaves."""
-        for slave in self.slaves:
-            slave.close()
+        """Free the instances."""
+        for instance in self.instances:
+            instance.close()
 
     def _over(self, t_ns: int, last: bool) -> str:
         if self.interrupt.requested:
@@ -163,10 +163,10 @@ class Master:
     def _instant(self, pattern: tuple[bool, ...]) -> "_Instant":
         due = [number for number, is_due in enumerate(pattern) if is_due]
         links = [self._link(link) for link in self.connections if link.target in due]
-        faults = [fault for fault in self.manipulators if fault.slave in due]
-        steps = [(self.slaves[number], self.decimation[number] * self.step_ns) for number in due]
-        return _Instant([self.slaves[number] for number in due], links, faults, steps)
+        faults = [fault for fault in self.manipulators if fault.instance in due]
+        steps = [(self.instances[number], self.decimation[number] * self.step_ns) for number in due]
+        return _Instant([self.instances[number] for number in due], links, faults, steps)
 
     def _link(self, link: Connection) -> Link:
-        inputs, outputs = self.slaves[link.target].inputs.values, self.slaves[link.source].outputs.values
+        inputs, outputs = self.instances[link.target].inputs.values, self.instances[link.source].outputs.values
         return inputs, link.target_places, outputs, link.source_places, link.convert

@@ -24,9 +24,15 @@ import numpy as np
 from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import element_names, has_variable_step, ports_of, read_description, text_parameters
+from orchestrator.cosim.fmu_instance import Indices, Ports
+from orchestrator.cosim.model_description import (
+    element_names,
+    has_variable_step,
+    ports_of,
+    read_description,
+    text_parameters,
+)
 from orchestrator.cosim.python_fmu import instantiation_message
-from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, check_archive, unpack
 from orchestrator.foreign.limits import FmuLimits
@@ -66,8 +72,8 @@ class _Shared:
         """Times the outputs, that is not-a-number if one of them is; and seldom else."""
 
 
-class ProcessSlave:
-    """One instance of one FMU, FMI 2.0 or 3.0, behind the face of a slave."""
+class RemoteInstance:
+    """One instance of one FMU, FMI 2.0 or 3.0, behind the face of an instance."""
 
     def __init__(
         self,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fmus.build import build_all
-from orchestrator.cosim.fmu_slave import FmuSlave
+from orchestrator.cosim.local_instance import LocalInstance
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
@@ -64,24 +64,24 @@ def test_extraction_goes_to_an_ascii_path(
 
 def test_a_parameter_the_fmu_does_not_have_is_named(files: dict[str, Path]) -> None:
     with pytest.raises(RunError, match=r"Vehicle\.fmu has no parameter tail; is it outdated\?"):
-        FmuSlave("vehicle", files["vehicle"], {"tail": 3.0}, silent)
+        LocalInstance("vehicle", files["vehicle"], {"tail": 3.0}, silent)
 
 
 def test_a_file_that_is_no_fmu(tmp_path: Path) -> None:
     path = tmp_path / "x.fmu"
     path.write_text("no zip")
     with pytest.raises(BadInput, match=r"x\.fmu: is not an FMU"):
-        FmuSlave("vehicle", path, {}, silent)
+        LocalInstance("vehicle", path, {}, silent)
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("readme.txt", "empty")
     with pytest.raises(BadInput, match=r"x\.fmu: is not an FMU"):
-        FmuSlave("vehicle", path, {}, silent)
+        LocalInstance("vehicle", path, {}, silent)
 
 
 def test_units_and_start_values_come_from_the_fmu(files: dict[str, Path]) -> None:
-    slave = FmuSlave("vehicle", files["vehicle"], {"car.wheelbase": 2.5}, silent)
-    place = slave.parameters.index["car.wheelbase"]
-    assert slave.parameters.values[place] == 2.5
-    assert slave.parameters.variables[place].signal.unit == "m"
-    assert slave.outputs.variables[slave.outputs.index["pose.heading"]].signal.unit == "rad"
-    slave.close()
+    instance = LocalInstance("vehicle", files["vehicle"], {"car.wheelbase": 2.5}, silent)
+    place = instance.parameters.index["car.wheelbase"]
+    assert instance.parameters.values[place] == 2.5
+    assert instance.parameters.variables[place].signal.unit == "m"
+    assert instance.outputs.variables[instance.outputs.index["pose.heading"]].signal.unit == "rad"
+    instance.close()

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from orchestrator.cosim.slave import Ports, Slave
+from orchestrator.cosim.fmu_instance import FmuInstance, Ports
 from orchestrator.scenario.end_condition import SPEED, EndCondition
 
 
@@ -27,18 +27,18 @@ class Standstill:
         return "standstill" if t_ns - self._since >= self._wait_ns else ""
 
 
-def standstill(condition: EndCondition, slaves: Sequence[Slave]) -> Standstill | None:
-    """Return the ending that watches the slaves; None if they do not have its signals: then time alone ends a run."""
-    mode, speed = (_output(name, slaves) for name in (condition.signal, SPEED))
+def standstill(condition: EndCondition, instances: Sequence[FmuInstance]) -> Standstill | None:
+    """Return the stop condition on the instances; None if they lack its signals: then time alone ends a run."""
+    mode, speed = (_output(name, instances) for name in (condition.signal, SPEED))
     return Standstill(condition, mode, speed) if mode is not None and speed is not None else None
 
 
-def _output(signal: str, slaves: Sequence[Slave]) -> tuple[Ports, int] | None:
+def _output(signal: str, instances: Sequence[FmuInstance]) -> tuple[Ports, int] | None:
     """Return where an output is, or what is told under that name."""
     owner, _, name = signal.partition(".")
-    for slave in slaves:
-        if slave.name == owner:
-            for ports in (slave.outputs, slave.inputs):
+    for instance in instances:
+        if instance.name == owner:
+            for ports in (instance.outputs, instance.inputs):
                 if name in ports.index:
                     return ports, ports.index[name]
     return None

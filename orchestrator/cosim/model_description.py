@@ -14,7 +14,7 @@ from modelkit.model import Model
 from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.declared import check_declared
-from orchestrator.cosim.slave import Ports, Scale
+from orchestrator.cosim.fmu_instance import Ports, Scale
 from orchestrator.text.errors import BadInput, format_value
 from orchestrator.text.quantities import MOST_WHOLE
 

@@ -1,4 +1,4 @@
-"""An FMI 2.0 co-simulation FMU behind the face of a slave. FMPy loads it; the arrays are allocated once.
+"""An FMI 2.0 co-simulation FMU behind the face of an instance. FMPy loads it; the arrays are allocated once.
 
 Each exchange is at most one call per type and direction (``fmi2GetReal`` and so on), made straight
 through ctypes on pointers that never change.
@@ -21,9 +21,9 @@ from fmpy.fmi2 import (
 
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import has_variable_step, ports_of, read_description, text_parameters
+from orchestrator.cosim.fmu_instance import Ports
+from orchestrator.cosim.model_description import has_variable_step, ports_of, read_description, text_parameters
 from orchestrator.cosim.python_fmu import instantiation_message
-from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 
 OK, WARNING, ERROR, FATAL = 0, 1, 3, 4
@@ -31,7 +31,7 @@ OK, WARNING, ERROR, FATAL = 0, 1, 3, 4
 LOADING = Lock()
 """FMPy changes the working directory of the process while it loads a library: one thread at a time."""
 LogCallback = Callable[[str, int, str], None]
-"""Called with (slave name, FMI status, message)."""
+"""Called with (instance name, FMI status, message)."""
 
 
 class Transfer:
@@ -60,7 +60,7 @@ class Transfer:
         return int(self.function(*self._arguments))
 
 
-class FmuSlave:
+class LocalInstance:
     """One instance of one FMU."""
 
     def __init__(

@@ -5,12 +5,12 @@ from typing import Any
 
 from modelkit.model import Model
 from modelkit.variables import constructor, flattener, variables, with_values
-from orchestrator.cosim.slave import Ports
+from orchestrator.cosim.fmu_instance import Ports
 from orchestrator.text.errors import RESOURCES, RunError
 
 
-class InProcessSlave:
-    """``modelkit.model.Model`` behind the face of a slave."""
+class ModelInstance:
+    """``modelkit.model.Model`` behind the face of an instance."""
 
     has_variable_step = True
 

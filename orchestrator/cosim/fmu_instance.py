@@ -1,6 +1,6 @@
 """What the master steps: something with named inputs and outputs in arrays allocated once.
 
-One slave hosts an FMU (``fmu_slave``), another the same model in process (``in_process_slave``); the
+One instance hosts an FMU (``fmu_instance``), another the same model in process (``in_process_instance``); the
 master, the faults, the log and the checks cannot tell them apart.
 """
 
@@ -27,7 +27,7 @@ class Scale(NamedTuple):
 
 
 class Ports:
-    """The inputs, or the outputs, of a slave: variables in order, and their values in one array.
+    """The inputs, or the outputs, of an instance: variables in order, and their values in one array.
 
     Integers and booleans are kept as doubles, which hold every 32-bit integer exactly, so that an
     exchange, a log row and a fault are one array operation.
@@ -62,14 +62,14 @@ class Ports:
         return np.array([place for place, item in enumerate(own) if item.kind is kind], dtype=np.intp)
 
     def add_told(self, variable: Variable) -> None:
-        """Add a variable that observers see under the slave's name, but that its model never gets."""
+        """Add a variable that observers see under the instance's name, but that its model never gets."""
         self.index[variable.name] = len(self.variables)
         self.variables.append(variable)
         self.names.append(variable.name)
         self.values = np.append(self.values, float(variable.start))
 
 
-class Slave(Protocol):
+class FmuInstance(Protocol):
     """One model in the co-simulation. Calls come in the order of the methods, from one thread."""
 
     name: str
@@ -101,29 +101,29 @@ class Slave(Protocol):
         """Terminate and free; may be called at any time, and twice."""
 
 
-def all_values(slaves: Sequence[Slave]) -> Array:
-    """Return one array of all inputs and outputs, slave by slave, of which each port's ``values`` are a part.
+def all_values(instances: Sequence[FmuInstance]) -> Array:
+    """Return one array of all inputs and outputs, instance by instance, of which each port's ``values`` are a part.
 
     Whoever looks at everything copies one row instead of one for each port. May be called again: an array
-    already shared by just these slaves is returned as it is.
+    already shared by just these instances is returned as it is.
     """
-    ports = [ports for slave in slaves for ports in (slave.inputs, slave.outputs)]
+    ports = [ports for instance in instances for ports in (instance.inputs, instance.outputs)]
     size = sum(len(item.values) for item in ports)
     bases = {id(item.values.base) for item in ports}
     shared = ports[0].values.base if ports else None
     if len(bases) == 1 and shared is not None and len(shared) == size:
         return shared
     shared = np.concatenate([np.empty(0), *(item.values for item in ports)])
-    for item, part in zip(ports, places_of(slaves), strict=True):
+    for item, part in zip(ports, places_of(instances), strict=True):
         item.values = shared[part]
     return shared
 
 
-def places_of(slaves: Sequence[Slave]) -> list[slice]:
-    """Return where the inputs, then the outputs, of each slave are in :func:`all_values`."""
+def places_of(instances: Sequence[FmuInstance]) -> list[slice]:
+    """Return where the inputs, then the outputs, of each instance are in :func:`all_values`."""
     found, at = [], 0
-    for slave in slaves:
-        for ports in (slave.inputs, slave.outputs):
+    for instance in instances:
+        for ports in (instance.inputs, instance.outputs):
             found.append(slice(at, at + len(ports.values)))
             at += len(ports.values)
     return found

@@ -5,23 +5,23 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.algorithm import CoSimulation
+from orchestrator.cosim.fmu_instance import FmuInstance
+from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.cosim.slave import Slave
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000
 
 
-def toys() -> list[Slave]:
-    return [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+def toys() -> list[FmuInstance]:
+    return [ModelInstance("plant", PLANT, {}), ModelInstance("brain", BRAIN, {})]
 
 
 def run(steps: int, every: dict[str, int] | None = None) -> Recording:
-    slaves = toys()
-    master = Master(slaves, STEP, steps * STEP, every)
-    recorder = Recorder(slaves, steps + 1)
+    instances = toys()
+    master = CoSimulation(instances, STEP, steps * STEP, every)
+    recorder = Recorder(instances, steps + 1)
     master.observers.append(recorder)
     master.initialize()
     end = master.run()
@@ -37,11 +37,11 @@ def test_each_side_sees_the_other_as_it_was_before_the_step() -> None:
     assert found.signals["brain.right"].tolist() == [0, 1, 2, 3, 4, 5]
 
 
-def test_order_of_the_slaves_does_not_matter() -> None:
+def test_order_of_the_instances_does_not_matter() -> None:
     recordings = []
-    for slaves in (toys(), toys()[::-1]):
-        master = Master(slaves, STEP, 20 * STEP)
-        recorder = Recorder(slaves, 21)
+    for instances in (toys(), toys()[::-1]):
+        master = CoSimulation(instances, STEP, 20 * STEP)
+        recorder = Recorder(instances, 21)
         master.observers.append(recorder)
         master.initialize()
         master.run()
@@ -52,29 +52,29 @@ def test_order_of_the_slaves_does_not_matter() -> None:
 
 
 def test_one_exchange_in_initialization_gives_inputs_before_the_first_step() -> None:
-    slaves = toys()
-    master = Master(slaves, STEP, STEP)
+    instances = toys()
+    master = CoSimulation(instances, STEP, STEP)
     master.initialize()
-    assert slaves[0].inputs.values[slaves[0].inputs.index["command"]] == 2.0
+    assert instances[0].inputs.values[instances[0].inputs.index["command"]] == 2.0
 
 
 def test_time_is_counted_not_added() -> None:
-    slaves = toys()
+    instances = toys()
     times: list[int] = []
 
-    class Clock(InProcessSlave):
+    class Clock(ModelInstance):
         def step(self, t_ns: int, dt_ns: int) -> None:
             times.append(t_ns)
             super().step(t_ns, dt_ns)
 
-    slaves[1] = Clock("brain", BRAIN, {})
-    master = Master(slaves, 333_333_333, 3_333_333_330)
+    instances[1] = Clock("brain", BRAIN, {})
+    master = CoSimulation(instances, 333_333_333, 3_333_333_330)
     master.initialize()
     assert master.run().t_ns == 3_333_333_330
     assert times == [k * 333_333_333 for k in range(10)]
 
 
-def test_a_slow_slave_acts_at_its_own_instants_and_holds_between() -> None:
+def test_a_slow_instance_acts_at_its_own_instants_and_holds_between() -> None:
     found = run(9, {"brain": 3})
     y = found.signals["plant.pose.y"]
     assert y == pytest.approx(np.arange(10) * 0.01)
@@ -88,7 +88,7 @@ def test_equal_rates_above_one_are_one_larger_step() -> None:
     assert found.signals["plant.left"].tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4]
 
 
-class Clock(InProcessSlave):
+class Clock(ModelInstance):
     """Notes its steps."""
 
     def __init__(self, *words: Any) -> None:
@@ -113,9 +113,9 @@ class Clock(InProcessSlave):
 )
 def test_the_last_step_ends_at_the_stop_time(stop_ns: int, every: int, steps: list[tuple[int, int]]) -> None:
     brain = Clock("brain", BRAIN, {})
-    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), brain]
-    master = Master(slaves, 7, stop_ns, {"brain": every})
-    recorder = Recorder(slaves, 2)
+    instances: list[FmuInstance] = [ModelInstance("plant", PLANT, {}), brain]
+    master = CoSimulation(instances, 7, stop_ns, {"brain": every})
+    recorder = Recorder(instances, 2)
     master.observers.append(recorder)
     master.initialize()
     assert master.run() == ("stop_time", stop_ns)
@@ -130,11 +130,11 @@ def test_an_ending_ends_and_an_interrupt_too() -> None:
         def stop_reason(self, t_ns: int) -> str:
             return "enough" if t_ns >= 3 * STEP else ""
 
-    master = Master(toys(), STEP, 100 * STEP)
+    master = CoSimulation(toys(), STEP, 100 * STEP)
     master.endings.append(At())
     master.initialize()
     assert master.run() == ("enough", 3 * STEP)
-    master = Master(toys(), STEP, 100 * STEP)
+    master = CoSimulation(toys(), STEP, 100 * STEP)
     master.interrupt.requested = True
     master.initialize()
     assert master.run() == ("interrupted", 0)
@@ -144,9 +144,9 @@ def test_the_recorder_grows() -> None:
     class Small(NamedTuple):
         exchanges: int = 2
 
-    slaves = toys()
-    recorder = Recorder(slaves, Small().exchanges)
+    instances = toys()
+    recorder = Recorder(instances, Small().exchanges)
     for t in range(9):
-        slaves[0].outputs.values[0] = t
+        instances[0].outputs.values[0] = t
         recorder.on_communication_point(t)
     assert recorder.recording({}).signals["plant.pose.x"].tolist() == list(range(9))

@@ -14,12 +14,12 @@ from fmus.compiled_batch import (
     FAULT_NUMBERS,
     FIRST_KEPT,
     BatchTables,
-    Disturbed,
     Doubles,
-    Ending,
-    Kept,
+    FaultInputs,
+    RecordedSignal,
+    SampleTime,
     SignalC,
-    When,
+    StopCondition,
     bits,
     signals_to_read,
 )
@@ -49,7 +49,7 @@ class Access(NamedTuple):
     """Inputs that it sets at the beginning of each period; nothing else may be connected to them."""
     seen: tuple[str, ...]
     """Signals that it sees at the end of each period."""
-    broken: When
+    broken: SampleTime
     """A run is broken off at the first exchange at which a mode has one of these values."""
 
 
@@ -57,10 +57,10 @@ class EpisodeModels(NamedTuple):
     """What is run, until when, what is kept of it, and what the caller has to do with it."""
 
     models: Mapping[str, Model]
-    ending: Ending
-    kept: Sequence[Kept]
+    ending: StopCondition
+    kept: Sequence[RecordedSignal]
     access: Access
-    faults: Sequence[Disturbed] = ()
+    faults: Sequence[FaultInputs] = ()
     code: StudyCode | None = None
     """Slices of the models, which must have :meth:`signals`; None: the complete models."""
 

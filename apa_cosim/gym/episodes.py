@@ -17,7 +17,7 @@ from apa_cosim.gym.polygon_contact import PolygonClearance
 from apa_cosim.gym.recorded import RecordedEpisode
 from apa_cosim.gym.scene_source import Scenes, SceneSource
 from controller_fmu.policy.signals import ACTION_COUNT, OBSERVATION_COUNT
-from fmus.compiled_batch import Ending, Kept, When
+from fmus.compiled_batch import RecordedSignal, SampleTime, StopCondition
 from fmus.compiled_episodes import (
     AT_STOP_TIME,
     BROKEN_OFF,
@@ -28,7 +28,7 @@ from fmus.compiled_episodes import (
 )
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import DONE, Scenario
 from orchestrator.sweep.disturbed import fault_receivers
@@ -37,7 +37,7 @@ from orchestrator.sweep.verdict import OUTCOMES, judge_rows
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.numbers import CLEARANCE
-from orchestrator.verdict.truth import Truth
+from orchestrator.verdict.truth import GroundTruth
 
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -46,7 +46,7 @@ OBSERVED = tuple(f"controller.observation[{number + 1}]" for number in range(OBS
 POSE = ("vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading", "vehicle.front_wheel_angle")
 COST = OBSERVATION_COUNT
 """Place of the cost to go among what is seen; the pose and the front wheels follow."""
-CONTACT = When("vehicle.contact", (1,))
+CONTACT = SampleTime("vehicle.contact", (1,))
 
 
 class Results(NamedTuple):
@@ -164,7 +164,7 @@ class Episodes:
     def results(self, which: Integers) -> Results:
         """Return the verdicts of ``which``, as they would be if they ended now."""
         rows = self._runs.rows[which]
-        truth = Truth(*(part[which] for part in self.scenes.truth))
+        truth = GroundTruth(*(part[which] for part in self.scenes.truth))
         verdict = judge_rows(self.source.scenario, truth, self.measures, rows)
         outcomes = [OUTCOMES[code] for code in verdict.outcome]
         reasons = list(verdict.reason)
@@ -230,14 +230,17 @@ def _empty(source: SceneSource, count: int) -> Scenes:
     one = source.scenes(np.array([0]))
     return one._replace(
         parameters=np.repeat(one.parameters, count, axis=0),
-        truth=Truth(*(np.repeat(p, count, axis=0) for p in one.truth)),
+        truth=GroundTruth(*(np.repeat(p, count, axis=0) for p in one.truth)),
     )
 
 
 def _compile(scenario: Scenario, count: int, measures: list[Any]) -> CompiledEpisodes:
     end = scenario.stop_condition
-    ending = Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
-    kept = [Kept(item.how, item.signal, None if item.when is None else When(*item.when)) for item in measures]
+    ending = StopCondition(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
+    kept = [
+        RecordedSignal(item.how, item.signal, None if item.when is None else SampleTime(*item.when))
+        for item in measures
+    ]
     seen = (*OBSERVED, "controller.cost_to_go", *POSE)
     access = Access(ACTIONS, seen, CONTACT)
     faults = tuple(item.inputs for item in fault_receivers(scenario))

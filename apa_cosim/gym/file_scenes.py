@@ -20,7 +20,7 @@ from orchestrator.grid.cases import BODY
 from orchestrator.grid.world.study import BODY_STEP
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.tpcap import read_tpcap
 from orchestrator.sweep.disturbed import numbers_for
@@ -29,7 +29,7 @@ from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import edges
-from orchestrator.verdict.truth import Truth, joined, truth_of
+from orchestrator.verdict.truth import GroundTruth, join_truths, truth_of
 from vehicle_fmu.scene import SceneParams
 
 BOX_COUNT = len(SceneParams().boxes)
@@ -54,12 +54,12 @@ class FileScenes:
         self.scenario = read[0].model_copy(update={"obstacles": []})
         made = [arrays(make_job(_study(item)), _chunk(item)) for item in read]
         self._lines, self._times = (np.concatenate(parts) for parts in zip(*made, strict=True))
-        self._truth = joined([truth_of(item, _vehicle(item)) for item in read])
+        self._truth = join_truths([truth_of(item, _vehicle(item)) for item in read])
 
     def scenes(self, seeds: Seeds) -> Scenes:
         """Return the scenes of ``seeds``."""
         at = seeds % len(self._scenarios)
-        truth = Truth(*(part[at] for part in self._truth))
+        truth = GroundTruth(*(part[at] for part in self._truth))
         return Scenes(self._lines[at], self._times[at], numbers_for(self.scenario, seeds), truth)
 
     def scenario_of(self, seed: int) -> Scenario:
@@ -93,7 +93,7 @@ def _policy_scenario(scenario: Scenario, body: str, stop_time: float, pedals: bo
         own |= {f"slot.{name}": value for name, value in scenario.slot.model_dump().items()}
     away = math.hypot(*(scenario.vehicle.get(f"start.{name}", 0.0) - own[f"target.{name}"] for name in ("x", "y")))
     own["max_distance"] = max(PolicyParams().max_distance, FARTHEST_SHARE * away)
-    limits = [item for item in shipped_requirements("gbt41630") if item.id in POSITION]
+    limits = [item for item in library_requirements("gbt41630") if item.id in POSITION]
     return Scenario(
         name=scenario.name,
         title=scenario.title,

@@ -10,14 +10,14 @@ import numpy as np
 
 from apa_cosim.gym.scene_source import SampledScenes, Seeds
 from controller_fmu.policy.params import PolicySystem
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.cases import KINDS as KIND_NAMES
 from orchestrator.grid.study import GBT_SETS
 from orchestrator.grid.world.factors import FACTORS, NEIGHBOURS, SLOT
 from orchestrator.grid.world.scene import KINDS, parameters
 from orchestrator.grid.world.study import BODY_STEP, limits_beside_neighbours
 from orchestrator.grid.world.study import scenario as world_scenario
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.space import Factor
 
@@ -61,7 +61,7 @@ def slot_scenario(kind: int, stop_time: float) -> Scenario:
         controller={"system": int(PolicySystem.POLICY)},
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
-        requirements=[*limits_beside_neighbours(GBT_SETS[number]), *shipped_requirements("no-contact")],
+        requirements=[*limits_beside_neighbours(GBT_SETS[number]), *library_requirements("no-contact")],
     )
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from apa_cosim.gym.scene_source import Polygons
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearances
 

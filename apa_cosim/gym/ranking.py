@@ -17,12 +17,12 @@ from apa_cosim.gym.scene_source import SceneSource
 from controller_fmu import System
 from fmus.compiled_episodes import RUNNING
 from modelkit.variables import variables
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.fmu_instance import FmuInstance
 from orchestrator.scenario.models import models_for
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.scenario import DONE, Scenario
-from orchestrator.session.foreign import Foreign, fmu_of
-from orchestrator.session.session import Messages, make_slaves, run_slaves
+from orchestrator.session.foreign import ImportedFmus, fmu_of
+from orchestrator.session.session import Messages, make_instances, run_instances
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.verdict.confidence import wilson
 from orchestrator.verdict.summary import summarize
@@ -82,9 +82,9 @@ def score(system: str, name: str, seeds: Sequence[int], options: EnvironmentOpti
         policy = RandomPolicy() if system == RANDOM else OnnxPolicy(Path(system))
         return Score(system, name, policy_outcomes(policy, source, seeds, options.period))
     if suffix == ".fmu":
-        foreign = Foreign({"controller": fmu_of(system)})
+        foreign = ImportedFmus({"controller": fmu_of(system)})
         return Score(system, name, [_run(source.scenario_of(seed), foreign) for seed in seeds])
-    return Score(system, name, [_run(for_system(source.scenario_of(seed), system), Foreign()) for seed in seeds])
+    return Score(system, name, [_run(for_system(source.scenario_of(seed), system), ImportedFmus()) for seed in seeds])
 
 
 def policy_outcomes(policy: Policy, source: SceneSource, seeds: Sequence[int], period: float) -> list[SceneOutcome]:
@@ -120,17 +120,19 @@ def for_system(scenario: Scenario, system: str) -> Scenario:
     return whole.model_copy(update={"controller": {**whole.controller, **map_of(whole)}})
 
 
-def _run(scenario: Scenario, foreign: Foreign) -> SceneOutcome:
-    slaves: list[Slave]
+def _run(scenario: Scenario, foreign: ImportedFmus) -> SceneOutcome:
+    instances: list[FmuInstance]
     messages = Messages()
     if foreign.files:
-        slaves = make_slaves(scenario, None, messages, foreign)
+        instances = make_instances(scenario, None, messages, foreign)
     else:
-        slaves = [CompiledSlave(name, model, scenario.given(name)) for name, model in scenario.models.items()]
+        instances = [
+            CompiledSlave(name, model, scenario.parameters_for(name)) for name, model in scenario.models.items()
+        ]
     try:
-        ran = run_slaves(scenario, slaves, messages, foreign=foreign)
+        ran = run_instances(scenario, instances, messages, foreign=foreign)
     finally:
-        for slave in slaves:
-            slave.close()
+        for instance in instances:
+            instance.close()
     summary = summarize(ran.recording, scenario, ran.wall_time)
     return SceneOutcome(summary.outcome, summary.reason, summary.duration, summary.penetration > 0.0)

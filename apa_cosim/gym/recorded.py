@@ -16,9 +16,9 @@ from controller_fmu.policy.signals import ACTION_COUNT
 from fmus.native.libraries import load_model, memory_size
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.slave import Array, Ports
+from orchestrator.cosim.fmu_instance import Array, Ports
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.session import Messages, run_slaves
+from orchestrator.session.session import Messages, run_instances
 from orchestrator.verdict.summary import summarize
 
 
@@ -45,14 +45,15 @@ class RecordedEpisode(NamedTuple):
         """Return the episode as a run: all signals at all exchanges, and the verdict; ``log``: an MCAP file for it."""
         scenario = self.scenario
         vehicle, controller = (
-            CompiledSlave(name, scenario.models[name], scenario.given(name)) for name in ("vehicle", "controller")
+            CompiledSlave(name, scenario.models[name], scenario.parameters_for(name))
+            for name in ("vehicle", "controller")
         )
         driven = DrivenSlave(controller, self.actions, round(self.period * 1e9))
         try:
-            ran = run_slaves(scenario, [vehicle, driven], Messages(), log=None if log is None else Path(log))
+            ran = run_instances(scenario, [vehicle, driven], Messages(), log=None if log is None else Path(log))
         finally:
-            for slave in (vehicle, driven):
-                slave.close()
+            for instance in (vehicle, driven):
+                instance.close()
         return Run(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
 
 

@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 from apa_cosim.gym.episodes import Episodes
 from controller_fmu.policy.signals import SENSOR_COUNT
 from modelkit.variables import variables
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.verdict.geometry import CarOutline, boxes, kerbs, place
 
 SIZE = (640, 480)

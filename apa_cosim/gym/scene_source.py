@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import variables
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.grid.world.factors import FACTORS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.disturbed import numbers_for
@@ -18,7 +18,7 @@ from orchestrator.sweep.job import Chunk, Job, Times, arrays, chunk_scenario, ma
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.space import Factor, Space
 from orchestrator.sweep.study.study import Study
-from orchestrator.verdict.truth import CAR_KEYS, Truth
+from orchestrator.verdict.truth import CAR_KEYS, GroundTruth
 
 Seeds = NDArray[np.int64]
 TARGET = ("x", "y", "heading")
@@ -36,7 +36,7 @@ class Scenes(NamedTuple):
     parameters: Array
     times: Times
     faults: Array
-    truth: Truth
+    truth: GroundTruth
 
 
 class SceneSource(Protocol):
@@ -64,7 +64,7 @@ class SampledScenes:
         self._fixed = {factor.name: factor.nominal for factor in FACTORS} | dict(fixed)
         self._place = place
         one = np.array([1])
-        names = list(self._columns(self._space.named(self._space.nominal()[None]), one))
+        names = list(self._columns(self._space.values_by_name(self._space.nominal()[None]), one))
         fields = [find_field(name, scenario) for name in names]
         values = self._space.values(self._space.nominal()[None], one)
         seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", scenario).place)]
@@ -116,9 +116,9 @@ class SampledScenes:
         given = {f"controller.target.{name}": found[f"target.{name}"] for name in TARGET}
         return found | given | {f"controller.slot.{name}": found[f"slot.{name}"] for name in SLOT}
 
-    def _truth(self, values: Array) -> Truth:
+    def _truth(self, values: Array) -> GroundTruth:
         wheelbase, front, rear, width = (values[:, self._column[key]] for key in CAR_KEYS)
-        return Truth(
+        return GroundTruth(
             values[:, [self._column[f"target.{name}"] for name in TARGET]],
             values[:, [self._column[f"slot.{name}"] for name in SLOT]],
             np.empty((len(values), 0, 4)),

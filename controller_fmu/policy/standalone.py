@@ -5,7 +5,7 @@ import sys
 from controller_fmu.policy.model import PolicyState, policy_initialize, policy_step
 from controller_fmu.policy.params import PolicyParams, PolicySystem
 from controller_fmu.policy.signals import PolicyInput, PolicyOutput
-from modelkit.model import Model, View
+from modelkit.model import Model, Variant
 from modelkit.terminals import TERMINALS
 
 MODEL = Model(
@@ -22,6 +22,6 @@ MODEL = Model(
     stop_time=5.0,
     terminals=TERMINALS,
     sampled=True,
-    view=View((("system", int(PolicySystem.POLICY)),), frozenset({"system"})),
+    view=Variant((("system", int(PolicySystem.POLICY)),), frozenset({"system"})),
 )
 """A controller of its own: only a policy needs its observation."""

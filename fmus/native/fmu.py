@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.cache_paths import CACHE
+from fmus.cache_paths import CACHE_FOLDER
 from fmus.contents.archive import DESCRIPTION, archive_bytes, archive_guid, content_guid
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.description3 import ABILITIES as ABILITIES3
@@ -64,7 +64,9 @@ def build(
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
         build_archive = partial(archive, model, names, guid, chosen, fmi)
-        cached = cache_file(CACHE, f"{model.name}-fmi{fmi}", guid.strip("{}"), ".fmu", build_archive, CACHED_FMUS)
+        cached = cache_file(
+            CACHE_FOLDER, f"{model.name}-fmi{fmi}", guid.strip("{}"), ".fmu", build_archive, CACHED_FMUS
+        )
         write_whole(path, cached.read_bytes())
     return path
 

@@ -135,13 +135,13 @@ def test_an_episode_is_recorded_with_the_same_bits_and_verdict(scenes: Any, tmp_
 @pytest.mark.slow
 def test_a_recorded_episode_has_the_bits_of_the_python_models() -> None:
     from apa_cosim.gym import recorded
-    from orchestrator.cosim.in_process_slave import InProcessSlave
+    from orchestrator.cosim.model_instance import ModelInstance
 
     env = ParkingEnv("world", body="kinematic", stop_time=1.0)
     driven(env, 10, seed=2)
     compiled = env.episode().run()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recorded, "CompiledSlave", InProcessSlave)
+        patch.setattr(recorded, "CompiledSlave", ModelInstance)
         python = env.episode().run()
     assert all((compiled[name] == python[name]).all() or np.isnan(python[name]).any() for name in python.signals)
 

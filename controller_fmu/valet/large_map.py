@@ -12,7 +12,7 @@ from controller_fmu.planning.task import CORNERS, Corner
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams, ValetSystem
 from controller_fmu.valet.standalone import MODEL as VALET
 from modelkit.composition import fields_of, make_named_tuple
-from modelkit.model import Model, View
+from modelkit.model import Model, Variant
 from modelkit.store import Column
 
 LARGE_MAP_CORNERS = 2048
@@ -55,6 +55,6 @@ MODEL: Model[Any, Any, Any, Any] = VALET._replace(
     package=sys.modules[__package__.rpartition(".")[0]],
     params=LargeValetParams,
     store=LargePlanStore,
-    view=View((("system", int(ValetSystem.VALET_LARGE)),), frozenset({"system"})),
+    view=Variant((("system", int(ValetSystem.VALET_LARGE)),), frozenset({"system"})),
     substitutes=((ValetParams, LargeValetParams), (PlanStore, LargePlanStore)),
 )

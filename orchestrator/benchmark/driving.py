@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario

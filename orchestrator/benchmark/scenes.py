@@ -11,8 +11,8 @@ from fmus.contents.description import project_version
 from fmus.files import write_whole
 from orchestrator.benchmark.driving import BODIES, DrivenScene, drive_scene
 from orchestrator.benchmark.planning import FoundPlan, plan_scene
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.text.errors import BadInput
 

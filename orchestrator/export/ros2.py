@@ -13,7 +13,7 @@ from orchestrator.log.line import Line
 from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import owned_with
+from orchestrator.text.owned import lock_with
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out or log.with_name(f"{log.stem}_ros2")
     if out.exists() and not (out / "metadata.yaml").is_file():
         raise BadInput("exists and is no bag; name another --out", file=out)
-    with owned_with(log, out):
+    with lock_with(log, out):
         recording = read_log(log)
         names = matching(recording.signals, arguments.signals) if arguments.signals else []
         write_bag(out, recording, names, read_messages(log))

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.cosim.slave import Array
 from orchestrator.drawing.scene import CAR as CAR_FRAME
 from orchestrator.drawing.scene import FRONT_WHEELS, WORLD, Surroundings, still_life
 from orchestrator.drawing.scene import ODOMETRY as ODOMETRY_FRAME
@@ -17,14 +17,14 @@ from orchestrator.verdict.geometry import (
     PLANNED,
     CarOutline,
     boxes,
-    described,
     edges,
     is_planned,
     kerbs,
     sample_path,
     slot_box,
+    vehicle_parameters,
 )
-from orchestrator.verdict.logged import logged
+from orchestrator.verdict.logged import read_logged_run
 
 CONTROLLER = "controller."
 NUMBERS = ("speed", "measured_speed", "steering_wheel_angle", "front_wheel_angle", "clearance")
@@ -147,8 +147,8 @@ class Bag:
         ]
         if mounts:
             self.write(0, "/tf_static", "tf2_msgs/TFMessage", transforms=mounts)
-        scenario = logged(recording).scenario
-        around = described(scenario, recording.parameters_of("vehicle"))
+        scenario = read_logged_run(recording).scenario
+        around = vehicle_parameters(scenario, recording.parameters_of("vehicle"))
         stage = Surroundings(
             None if scenario.slot is None else slot_box(scenario.slot),
             boxes(around),

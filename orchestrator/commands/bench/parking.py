@@ -9,12 +9,12 @@ from fmus.files import write_whole
 from orchestrator.benchmark.driving import BODIES
 from orchestrator.benchmark.scenes import ROWS, SceneRow, rows_of, scenes_in
 from orchestrator.benchmark.table import as_json, csv_text, figures_of, table_lines
+from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.master import Interrupt
 from orchestrator.text.console import Meter, console, say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
-from orchestrator.text.owned import owned
+from orchestrator.text.owned import lock_folder
 
 EXAMPLES = """examples:
   apa bench parking                              the shipped scenarios of the valet
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     scenes = scenes_in(arguments.places, bodies)
     interrupt = Interrupt()
     rows: list[SceneRow] = []
-    with owned(out):
+    with lock_folder(out):
         if arguments.fresh:
             for file in (out / ROWS).glob("*.json"):
                 file.unlink()

@@ -26,17 +26,17 @@ from orchestrator.verdict.outcome import BEYOND
 CONTENT = {
     "name": "bakeoff",
     "title": "Every parking controller in the same slots",
-    "description": "Three slots, two cars, two bodies, three starts, five disturbances. Parked: by GB/T 41630, nothing "
-    "touched.",
+    "description": "Three slots, two cars, two bodies, three starts, five disturbances. Parked: within GB/T 41630, "
+    "no contact.",
     "map": {"x": "slot", "y": "controller", "split": None},
 }
 FOOTNOTES = (
-    "Medians of the parked drives. Refused: no path from this start. Parked: the controller says so, the car stands, "
-    "in the slot and within the limits of GB/T 41630, nothing touched; exact: of these within the house limits across "
-    "the slot and in heading.",
-    "apa is told neither slot, target nor start: it drives past at 2 m/s along the line through the start pose, with "
-    "1 cm of sensor noise, and parks from where it likes. Its time counts from the driver's confirmation, its "
-    "clearance with the way past the slot; it chooses its place along the slot, so errors along it are not compared.",
+    "Medians of the parked runs. Refused: no path from this start. Parked: the controller reports it, at standstill "
+    "in the slot, within the limits of GB/T 41630, without contact. Exact: also within the lateral and heading limits "
+    "of the set house.",
+    "apa has no slot, target or start as input: it drives past at 2 m/s along the line through the start pose, with "
+    "1 cm of sensor noise, and chooses where it starts to park. Its time counts from the driver's confirmation, its "
+    "clearance includes the search. It chooses its longitudinal position, so longitudinal errors are not compared.",
 )
 HEADS = ("slot [m]", "controller", "runs", "refused", "parked", "exact", "time [s]", "manoeuvres", "lateral [cm]")
 MORE = ("heading [deg]", "clearance [m]", "wheel [turns]", "why not")

@@ -50,8 +50,8 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
     scenario, design = design_of(scenarios)
     content = {
         "name": "valet-slots",
-        "title": "Slots that the valet finds: kinds, angles, neighbours, ends, streets, sides, ways past",
-        "description": "Parked: turned and beside as GB/T 41630 allows, no contact; the sensors alone tell the slot.",
+        "title": "Slot detection of the valet: kinds, angles, neighbours, walls, roads, sides, search paths",
+        "description": "Parked: heading and lateral position within GB/T 41630, no contact. No external slot.",
         "map": {"x": "angle", "y": "neighbours", "split": "end"},
     }
     return Study(scenario, design, content, measures=MEASURES)

@@ -75,8 +75,8 @@ def study(runs: int = 400, lot: int = 0, people: bool = False) -> Study:
     design = design._replace(fields=[*design.fields, field], values=np.hstack([design.values, side]))
     content = {
         "name": "apa-out",
-        "title": "Out of slots along the road and across it, to either side",
-        "description": "Finished: handed over, nothing touched.",
+        "title": "Pulling out of parallel and perpendicular slots, to either side",
+        "description": "Finished: the driver is prompted to take over, no contact.",
         "map": {"x": "extra", "y": "behind", "split": "kind"},
         "lot": lot,
     }

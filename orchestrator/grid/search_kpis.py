@@ -87,8 +87,8 @@ def study_of(chosen: list[GridCase]) -> Study:
     scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
     content = {
         "name": "search-kpis",
-        "title": "The parking assist's search over kinds, sizes, speeds and distances",
-        "description": "Gaps that fit and gaps that do not; what is shown, how exact, how fast the car is parked.",
+        "title": "Slot detection of the parking assist over kinds, sizes, speeds and distances",
+        "description": "Gaps in which the vehicle fits, and others; detection, accuracy and parking time.",
         "map": {"x": "speed", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
     }

@@ -126,8 +126,8 @@ def study(lot: int = 0, lots: int = 1) -> Study:
     scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
     content = {
         "name": "valet-rows",
-        "title": "The valet in rows of slots: angles, tail or nose in, streets, ways to come, cars",
-        "description": "Parked: turned and beside as GB/T 41630 allows, no contact; the slot is told by its corners.",
+        "title": "The valet in rows of slots: angles, tail or nose in, roads, starts, cars",
+        "description": "Parked: heading and lateral position within GB/T 41630, no contact; the slot is known.",
         "map": {"x": "angle", "y": "street", "split": "kind"},
     }
     measures = {

@@ -50,8 +50,8 @@ def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     shared = scenario(system)
     content = {
         "name": "parking-world" if system == APA_SYSTEM else f"parking-world-{system}",
-        "title": "Parking in ordinary streets and car parks",
-        "description": "Parked: within GB/T 41630 of a slot by ISO 16787, nothing touched.",
+        "title": "Parking beside ordinary roads and in car parks",
+        "description": "Parked: within GB/T 41630 of a slot by ISO 16787, no contact.",
         "map": {"x": "extra", "y": "cars_a", "split": "kind"},
         "seed": seed,
         "system": system,

@@ -56,8 +56,8 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYST
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
     content = {
         "name": "apa-world-mild" if mild else "apa-world",
-        "title": "The parking assist in the world: everything disturbed at once",
-        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), nothing touched.",
+        "title": "The parking assist with all disturbances at once",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), no contact.",
         "map": {"x": "extra", "y": "heading", "split": "kind"},
         "seed": seed,
         "mild": mild,

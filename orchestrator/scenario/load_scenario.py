@@ -141,7 +141,7 @@ def _with_parameters(scenario: Scenario, more: More) -> Scenario:
 
 
 def _source_of(key: str, layers: list[Layer], path: Path) -> object:
-    """Return the file, or ``--set``, that has the last word about a key of the scenario."""
+    """Return the file, or ``--set``, that determines a key of the scenario."""
     top = key.partition(".")[0].partition("[")[0]
     return next((file for content, file in reversed(layers) if top in content), path)
 
@@ -199,7 +199,7 @@ def _entry_beside(entry: object, folder: Path) -> object:
 
 
 def _system_request(layers: list[Layer]) -> dict[str, object]:
-    """Return what the topmost layer that says it asks for as ``controller.system``."""
+    """Return ``controller.system`` of the topmost layer that has it."""
     sections = [content.get("controller") for content, _ in layers]
     asked = [section["system"] for section in sections if isinstance(section, Mapping) and "system" in section]
     return {"system": asked[-1]} if asked else {}

@@ -1,4 +1,4 @@
-"""What stands in a scenario all the time, as the map that a controller is told: polygons, boxes, kerbs."""
+"""Static obstacles of a scenario as the map of a controller: polygons, boxes, kerbs."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -20,14 +20,14 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     corners = [(x, y, number) for number, polygon in polygons for x, y in polygon]
     if room < len(corners):
         raise BadInput(f"{len(corners)} corners, the map holds {room}", file=scenario.file, key="obstacles")
-    told: dict[str, float | int | bool] = {}
+    parameters: dict[str, float | int | bool] = {}
     for place, (x, y, number) in enumerate(corners, start=1):
-        told |= {f"map[{place}].x": x, f"map[{place}].y": y, f"map[{place}].polygon": number}
-    return told
+        parameters |= {f"map[{place}].x": x, f"map[{place}].y": y, f"map[{place}].polygon": number}
+    return parameters
 
 
 def mapped_obstacles(scenario: Scenario) -> list[Points]:
-    """Return the corners [m] of all that a map has: what stands there all the time, and kerbs as walls."""
+    """Return the corners [m] of the polygons of a map: static obstacles, and kerbs as walls."""
     return [*static_obstacles(scenario), *_kerbs(scenario.vehicle)]
 
 

@@ -1,4 +1,4 @@
-"""A mode of somebody else's FMU as a user lists it, for the coverage of tests: its states and its transitions."""
+"""A mode of a third-party FMU as listed by the user, for the coverage of tests: its states and its transitions."""
 
 import re
 

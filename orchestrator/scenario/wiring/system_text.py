@@ -132,7 +132,7 @@ class Origin(_SystemPart):
 
 
 class PoseFrame(_SystemPart):
-    """How somebody else counts poses, against ISO 8855 at the midpoint of the rear axle."""
+    """Frame of the poses of a third-party FMU, relative to ISO 8855 at the midpoint of the rear axle."""
 
     origin: Origin = Origin()
     """Its origin in our frame."""
@@ -211,9 +211,9 @@ class SystemText(_SystemPart):
     modes: dict[str, ModeList] = {}
     """Outputs that tell a mode -> its states and transitions, for ``apa test --coverage``."""
     units: dict[str, UnitEntry] = {}
-    """Units that neither the FMUs define nor everybody knows, by the name that connections give them."""
+    """Units that the FMUs do not define, by the name used in connections."""
     ignored: list[str] = []
-    """What an .ssp has that is ignored, as SSP has it: told before the run."""
+    """Elements of an .ssp that are ignored; a message before the run names them."""
     by_name: bool = True
     """Connect outputs and inputs of the same name of which nothing else is said."""
     frames: dict[str, PoseFrame] = {}

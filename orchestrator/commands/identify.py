@@ -42,9 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--unit", action="append", default=[], metavar="COLUMN=UNIT", help="unit that the log does not state"
     )
-    parser.add_argument("--fit", metavar="A,B", help="parameters to identify (default: what the log may tell)")
+    parser.add_argument("--fit", metavar="A,B", help="parameters to identify (default: chosen by the signals)")
     parser.add_argument(
-        "--car", default="", metavar="CAR", help="shipped car, or file: start values, and what is known"
+        "--car", default="", metavar="CAR", help="shipped car, or file: start values and known parameters"
     )
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="known parameter, such as car.wheelbase=2.62"

@@ -33,9 +33,12 @@ METADATA_VERSION: Final = 8
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
     parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="default: the log's name with _ros2")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: name of the log with _ros2)")
     parser.add_argument(
-        "--signals", action="append", metavar="PATTERN", help="these as Float64 too, such as controller.*"
+        "--signals",
+        action="append",
+        metavar="PATTERN",
+        help="also write these signals as Float64, such as controller.*",
     )
 
 

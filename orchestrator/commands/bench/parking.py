@@ -25,7 +25,7 @@ EXAMPLES = """examples:
 kinematic: no errors. double_track: tyres, 40 ms dead time and 50 ms lag of the steering, 30 mrad backlash, 80 ms brake
 lag, errors of odometry and noise of the ultrasonic sensors.
 
-writes DIR/table.csv, DIR/table.json and DIR/rows; the same command goes on with the scenes that have no row yet
+writes DIR/table.csv, DIR/table.json and DIR/rows; the same command continues with the scenes that have no row
 exit codes: 0 every scene planned and parked without contact, 1 one was not, 2 bad input, 130 interrupted
 """
 
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, default=Path("runs/bench/parking"), metavar="DIR", help="output folder (runs/bench/parking)"
     )
-    parser.add_argument("--fresh", action="store_true", help="plan and drive scenes again that have a row")
+    parser.add_argument("--fresh", action="store_true", help="plan and drive all scenes again")
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--json", action="store_true", help="print JSON instead of the table")
     kinds.add_argument("--csv", action="store_true", help="print CSV instead of the table")

@@ -18,49 +18,6 @@ COST_OF_SLOW = 1.0
 """All cases of a test function together [s]; from here on ``make quick`` leaves the function out."""
 LOWEST_RECORDED = 0.2
 """Functions below this [s] are not in the table: 95 of 100 lines would say that a test costs nothing."""
-NOT_MEASURED = (
-    "orchestrator/test_fmu_instance.py",
-    "orchestrator/test_new.py",
-    "orchestrator/test_new_ci.py",
-    "orchestrator/test_recover.py",
-    "orchestrator/test_ssp.py",
-    "orchestrator/test_system.py",
-    "papers/test_apa.py",
-    "papers/test_apa_grid.py",
-    "papers/test_apa_world.py",
-    "papers/test_bakeoff.py",
-    "papers/test_guo2015.py",
-    "papers/test_hsic.py",
-    "papers/test_kinds.py",
-    "papers/test_preview.py",
-    "papers/test_zhang2022.py",
-    "planning/test_compiled.py",
-    "report/test_axe.py",
-    "report/test_browser.py",
-    "report/test_scripts.py",
-    "steptest/test_pytest_plugin.py",
-    "stream/test_stream.py",
-    "sweep/test_batch.py",
-    "sweep/test_dask.py",
-    "sweep/test_page.py",
-    "sweep/test_resume.py",
-    "test_benchmarks.py",
-    "twin/test_compiled_master.py",
-    "twin/test_container.py",
-    "twin/test_interop.py",
-    "twin/test_same_bits.py",
-    "valet/test_valet.py",
-    "valet/test_valet_scenarios.py",
-    "valet/test_valet_search.py",
-    "valet/test_valet_state.py",
-    "vehicle/test_double_track.py",
-    "vehicle/test_scene.py",
-    "vehicle/test_tires.py",
-    "vehicle/test_vehicle.py",
-)
-"""Files that took over 3 s before cost was recorded for each function and were not measured since: slow as a whole."""
-COST_OF_NOT_MEASURED = 20.0
-"""What such a file is taken to cost [s]: they run among the first."""
 SHARED_SCOPES = ("class", "module", "package", "session")
 
 
@@ -83,8 +40,7 @@ def read_costs(file: Path = FILE) -> dict[str, float]:
 
 def is_slow(nodeid: str, costs: dict[str, float]) -> bool:
     """Return whether ``make quick`` leaves out a test."""
-    name = function_of(nodeid)
-    return name.split("::")[0] in NOT_MEASURED or costs.get(name, 0.0) >= COST_OF_SLOW
+    return costs.get(function_of(nodeid), 0.0) >= COST_OF_SLOW
 
 
 def write_costs(costs: dict[str, float], file: Path = FILE) -> None:
@@ -96,7 +52,7 @@ def write_costs(costs: dict[str, float], file: Path = FILE) -> None:
 
 def cost_of_files(costs: dict[str, float]) -> dict[str, float]:
     """Return file -> cost of its functions together [s]."""
-    files: dict[str, float] = defaultdict(float, dict.fromkeys(NOT_MEASURED, COST_OF_NOT_MEASURED))
+    files: dict[str, float] = defaultdict(float)
     for name, cost in costs.items():
         files[name.split("::")[0]] += cost
     return files
@@ -179,6 +135,8 @@ class CostTable:
     def pytest_runtest_logreport(self, report: Any) -> None:
         """Add one phase of one test."""
         name = function_of(report.nodeid)
+        if not hasattr(report, "cost"):
+            return  # of a process that has crashed
         self.own[name] += report.cost
         for base, fixture, cost in report.made:
             self.made[base, fixture] += cost

@@ -12,7 +12,7 @@ from benchmarks.results import Measurement, lasting, read_table, write_table
 from modelkit.variables import flatten
 
 BENCHMARKS = sorted(file.stem.removeprefix("bench_") for file in Path("benchmarks").glob("bench_*.py"))
-NEEDS_LITTLE = ("cosim", "sweep")
+NEEDS_LITTLE = ("cosim",)
 
 
 @pytest.fixture

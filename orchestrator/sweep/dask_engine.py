@@ -4,6 +4,7 @@ Dask hands the chunks of a worker that is lost to the others; a chunk may be don
 the same. Workers need this project installed, of the same version.
 """
 
+import gc
 import importlib
 import queue
 from collections.abc import Iterator
@@ -32,6 +33,7 @@ class DaskEngine:
             place = address if self._cluster is None else self._cluster.cluster
             self._client = distributed.Client(place, timeout=CONNECT_TIMEOUT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
+            gc.collect()  # closes the client here; in the thread that another client starts, both would wait for ever
             raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
         self.workers = max(1, sum(self._client.nthreads().values()))

@@ -70,14 +70,21 @@ def all_bits(scalars: Any) -> Any:
     return kinds, struct.pack(kinds, *scalars)
 
 
+_libraries: dict[Any, Any] = {}
+"""Header, source and how it was compiled -> library: its functions keep nothing, so models of one process share it."""
+
+
 class CModel:
     """The C of a model behind the functions of the model."""
 
     def __init__(self, model: Any, translation: Any, folder: Any, **how: Any) -> None:
-        (folder / f"{model.name}.h").write_text(translation.header)
-        (folder / f"{model.name}.c").write_text(translation.source)
+        key = (translation.header, translation.source, *sorted(how.items()))
+        if key not in _libraries:
+            (folder / f"{model.name}.h").write_text(translation.header)
+            (folder / f"{model.name}.c").write_text(translation.source)
+            _libraries[key] = compiled(folder, model.name, f"{model.name}.c", **how)
         self.model = model
-        self.library = compiled(folder, model.name, f"{model.name}.c", **how)
+        self.library = _libraries[key]
         self.kinds = {group: Struct(getattr(model, group)) for group in ("params", "inputs", "outputs", "state")}
         self.state, self.outputs = (structure(self.kinds[group])() for group in ("state", "outputs"))
         self.store = structure(Struct(model.store))() if model.store else None

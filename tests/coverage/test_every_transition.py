@@ -9,6 +9,7 @@ from orchestrator.coverage.covered import ChartCoverage, chart_coverage
 from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.scenario.models import MODELS, apart_models
 
+pytestmark = pytest.mark.release  # measures the tests, not the models
 HERE = Path(__file__).parent
 SHIPPED = (
     "guo2015-case4",

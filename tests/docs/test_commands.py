@@ -15,7 +15,7 @@ from typing import NamedTuple
 import pytest
 import yaml
 
-from orchestrator.cli import main
+from orchestrator.cli import main, parser
 from orchestrator.cosim.fmu_files import fmu_files
 
 ROOT = Path(__file__).parents[2]
@@ -42,6 +42,12 @@ NOT_RUN = {
     "apa recover runs/guo2015-case4/run.mcap.part": "needs a killed run; tests/orchestrator/test_recover.py has some",
 }
 """How a command begins that is not run here -> why."""
+LONG_PAGES = (
+    *("catalogue", "index", "parking", "parking-planning", "parking-results", "parking-use", "see-and-drive"),
+    *("studies", "targets", "use-in-your-tool", "vehicle"),
+)
+"""Pages whose commands drive, sweep and compile for minutes what tests of the command drive in small. On each change
+the words of their commands are checked, `make release` runs them."""
 NEEDS = {
     "apa export mf4": "asammdf",
     "apa export rerun": "rerun",
@@ -138,8 +144,25 @@ def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: page.name)
+def test_apa_knows_every_word_that_is_printed(page: Path) -> None:
+    printed = [shlex.split(line) for block in blocks(page) if block.language == "sh" for line in commands(block)]
+    for words in printed:
+        if words[0] == "apa":
+            assert parser().parse_args(words[1:]).run, words
+
+
+PAGES_BY_COST = [
+    pytest.param(page, marks=pytest.mark.release if page.stem in LONG_PAGES else (), id=page.name)
+    for page in WITH_COMMANDS
+]
+
+
+def test_long_pages_are_there() -> None:
+    assert set(LONG_PAGES) < {page.stem for page in WITH_COMMANDS}
+
+
+@pytest.mark.parametrize("page", PAGES_BY_COST)
 def test_commands_do_what_is_printed(page: Path, shelf: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = shutil.copytree(shelf, tmp_path / "work")
     monkeypatch.chdir(folder)

@@ -1,5 +1,6 @@
 """The recipes of docs/extend*.md, followed literally: in a copy of the repository, blocks as edits, commands run."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -24,8 +25,6 @@ OWN_TESTS = (
     "tests/orchestrator/test_viewer_layouts.py",
 )
 """Those that a recipe could break: the structure, the language of models, systems, bad parameters, limits, layouts."""
-COMPILES = "apa build --fmus native"
-"""How a command begins that runs once, for all recipes together; ``apa run`` of a recipe alone compiles nothing."""
 HANGS = 1800.0
 """A command that takes longer hangs [s]; building FMUs beside much other work takes minutes."""
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.S | re.M)
@@ -60,26 +59,80 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("recipe", recipes(), ids=lambda recipe: recipe.title)
+ALONE = ("Change a gain", "Change a planner")
+"""Recipes that run alone on each change too: another gain or law changes what the commands of the others print."""
+
+
+@pytest.mark.parametrize(
+    "recipe",
+    [
+        pytest.param(recipe, marks=() if recipe.title in ALONE else pytest.mark.release, id=recipe.title)
+        for recipe in recipes()
+    ],
+)
 def test_a_recipe_does_what_it_says(recipe: Recipe, copy: Path) -> None:
     for language, file, text in recipe.edits:
         edit(copy, language, copy / file, text)
     for command in recipe.commands:
-        if not command.startswith(COMPILES):
-            is_run = command.startswith("apa run") and "--fmus" not in command
-            follow(copy, command, ["--fmus", "none"] if is_run else [])
+        words, _, comment = command.partition("#")
+        as_said(comment, *run_line(copy, words.split()))
 
 
-def follow(copy: Path, command: str, more: list[str]) -> None:
-    """Run a command of a page with ``more`` words; it must do what the page says behind it."""
-    words, _, comment = command.partition("#")
-    code, output = run_line(copy, [*words.split(), *more])
+def as_said(comment: str, code: int, output: str) -> None:
+    """Assert that a command did what the page says behind it."""
     asked, _, wanted = comment.strip().partition(": ")
     assert code == int(asked.removeprefix("exit ") or 0) if asked.startswith("exit") else code == 0, output
     assert all(word in output for word in wanted.split(", ")), output
 
 
-def test_all_recipes_together_compile_and_pass_the_projects_own_tests(copy: Path) -> None:
+IN_ONE_PROCESS = """
+import contextlib, io, json, shutil, sys
+from orchestrator.cli import main
+answers = []
+for lines in json.load(sys.stdin):
+    for words in lines:
+        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
+            try:
+                code = main(words)
+            except SystemExit as end:
+                code = end.code
+        answers.append([code or 0, out.getvalue()])
+    for folder in ("run", "runs", "build"):
+        shutil.rmtree(folder, ignore_errors=True)
+json.dump(answers, sys.stdout)
+"""
+"""Runs the commands of one recipe after the other in a process that has the models of all."""
+
+
+def test_what_adds_something_does_so_together(copy: Path) -> None:
+    """In CPython; ``make release`` compiles, and runs the project's own tests."""
+    asked: list[list[list[str]]] = []
+    comments = []
+    for recipe in recipes():
+        if not recipe.title.startswith("Add "):
+            continue
+        for language, file, text in recipe.edits:
+            edit(copy, language, copy / file, text)
+        asked.append([])
+        for command in recipe.commands:
+            words, _, comment = command.partition("#")
+            if command.startswith("python"):
+                as_said(comment, *run_line(copy, words.split()))
+                continue
+            is_run = words.startswith("apa run") and "--fmus" not in words
+            asked[-1].append([*words.split()[1:], *(["--fmus", "none"] if is_run else [])])
+            comments.append(comment)
+    call = [sys.executable, "-c", IN_ONE_PROCESS]
+    done = subprocess.run(
+        call, cwd=copy, env=environment(copy), input=json.dumps(asked), capture_output=True, text=True, timeout=HANGS
+    )
+    assert done.returncode == 0, done.stderr
+    for comment, answer in zip(comments, json.loads(done.stdout), strict=True):
+        as_said(comment, *answer)
+
+
+@pytest.mark.release
+def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
     for folder in ("tests", "apa_cosim", "benchmarks"):
         shutil.copytree(ROOT / folder, copy / folder, ignore=LEFT_OUT)
     shutil.copy(ROOT / "pyproject.toml", copy)
@@ -89,10 +142,6 @@ def test_all_recipes_together_compile_and_pass_the_projects_own_tests(copy: Path
         for command in recipe.commands:
             if command.startswith("python"):  # writes files that are checked in
                 run_line(copy, command.partition("#")[0].split())
-    compiled = [command for recipe in recipes() for command in recipe.commands if command.startswith(COMPILES)]
-    assert compiled
-    for command in (*compiled, "apa run straight --fmus native --no-page # : parked"):
-        follow(copy, command, [])
     code, output = run(copy, ["-n", "0", "-q", "-p", "no:cacheprovider", *OWN_TESTS], "pytest")
     assert code == 0, output
 
@@ -132,10 +181,13 @@ def run_line(copy: Path, words: list[str]) -> tuple[int, str]:
     return run(copy, words[1:]) if words[0] == "apa" else run(copy, words[3:], words[2])
 
 
+def environment(copy: Path) -> dict[str, str]:
+    return {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(copy), "COLUMNS": "200"}
+
+
 def run(copy: Path, words: list[str], module: str = "orchestrator") -> tuple[int, str]:
-    environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(copy), "COLUMNS": "200"}
     call = [sys.executable, "-m", module, *words]
-    done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True, timeout=HANGS)
+    done = subprocess.run(call, cwd=copy, env=environment(copy), capture_output=True, text=True, timeout=HANGS)
     return done.returncode, done.stdout + done.stderr
 
 

@@ -113,7 +113,7 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=list(MODELS))
-@pytest.mark.parametrize("name", [*SCENARIOS, "apa-parallel-real"])
+@pytest.mark.parametrize("name", ["guo2015-case4", "zhang2022-double-track", "apa-parallel-real"])
 def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model: Any, name: Any) -> None:
     """So a value set before the first step and one set before initialization do the same, but for the first echo."""
     params = constants(load_scenario(name, []))[next(key for key, item in MODELS.items() if item is model)]

@@ -63,6 +63,7 @@ def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
     as_on_record(page, page_scenarios())
 
 
+@pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute
 def test_the_valet_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
     scenarios = page_scenarios("valet")
     page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")

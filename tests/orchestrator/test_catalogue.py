@@ -183,6 +183,7 @@ def test_the_command_says_it_as_text_json_junit_and_page(tmp_path: Path, capsys:
 
 
 @compiled
+@pytest.mark.release  # drives three catalogues; tests/golden drives all scenarios
 def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

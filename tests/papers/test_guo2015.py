@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.guo2015.params import GuoParams
-from orchestrator.papers.drive import drive
 from orchestrator.papers.guo2015 import case_rows, reproduce
 from orchestrator.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
 from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
@@ -105,8 +104,8 @@ def test_figures_are_written(reproduction: Reproduction) -> None:
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_scenarios_end_as_they_say(name: str) -> None:
-    driven = drive(name)
+def test_scenarios_end_as_they_say(name: str, by_default: Drive) -> None:
+    driven = by_default(name)
     assert driven.summary.outcome == driven.scenario.expected_outcome
 
 
@@ -123,8 +122,8 @@ def test_scenarios_end_as_they_say(name: str) -> None:
         ("fault-pose-noise", "all checks passed"),
     ],
 )
-def test_faults_end_with_a_reason_and_a_stopped_car(name: str, reason: str) -> None:
-    driven = drive(name)
+def test_faults_end_with_a_reason_and_a_stopped_car(name: str, reason: str, by_default: Drive) -> None:
+    driven = by_default(name)
     assert driven.summary.outcome == driven.scenario.expected_outcome
     assert driven.summary.reason == reason
     assert driven.recording.signals["vehicle.speed"][-1] == 0.0

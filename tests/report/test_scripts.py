@@ -53,6 +53,7 @@ def test_types_fit(name: Any, tmp_path: Path) -> None:
     assert checked(tmp_path, SCRIPTS[name]()) == ""
 
 
+@pytest.mark.release  # tests the compiler's settings
 @pytest.mark.parametrize("wrong", ["plots.hoover(1);", "plots.zoom(1, 2);", "moved(3, 1, 2);"])
 def test_a_wrong_name_or_type_would_be_found(wrong: str, tmp_path: Path) -> None:
     bad = f"function bad(plots = new Plots({{}}, $('x'), bad, bad)) {{ {wrong} }}\nbad();"

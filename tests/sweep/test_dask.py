@@ -1,5 +1,6 @@
 """A study on a Dask cluster of separate processes on this machine, one of them killed on the way."""
 
+import gc
 import signal
 import socket
 import subprocess
@@ -107,6 +108,7 @@ def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() ->
             for security in (None, distributed.Security.temporary()):
                 with pytest.raises((TypeError, OSError)):
                     distributed.Client(address, timeout=5, security=security, set_as_default=False)
+                gc.collect()  # here, not in the thread that the next client starts: its close waits for that client
         finally:
             own.close()
     assert not own._folder.exists()

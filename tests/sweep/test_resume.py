@@ -111,8 +111,8 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
 
 def test_a_study_may_be_finished_by_another_engine(study: Any, tmp_path: Path) -> None:
     small = tmp_path / "trial.yaml"
-    small.write_text(study.read_text().replace("n: 600", "n: 6"))
-    common = ["sweep", str(small), "--no-page", "--chunk", "4", "--out"]
+    small.write_text(study.read_text().replace("n: 600", "n: 2"))
+    common = ["sweep", str(small), "--no-page", "--chunk", "2", "--out"]
     assert main([*common, str(tmp_path / "batch")]) == 0
     assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0
     tables = [(tmp_path / kind / "trial.parquet").read_bytes() for kind in ("batch", "fmus")]

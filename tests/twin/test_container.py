@@ -84,7 +84,7 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) ->
 
 
 @pytest.mark.parametrize("milliseconds", [1, 2, 3, 7])
-@pytest.mark.parametrize("name", [*SCENARIOS, pytest.param("valet-parallel", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", [*SCENARIOS, pytest.param("valet-parallel", marks=pytest.mark.release)])
 def test_its_exchanges_are_exact_at_any_communication_step(name: Any, milliseconds: int) -> None:
     scenario = load_scenario(name, [])
     model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
@@ -236,6 +236,7 @@ def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
         one_model(CASE, None, ["vehicle.promt"], None)
 
 
+@pytest.mark.release  # compiles a container of its own
 def test_an_input_left_open_is_what_the_tool_says(tmp_path: Path) -> None:
     out = tmp_path / "open.fmu"
     assert main(["export", "container", CASE.name, "--input", "vehicle.prompt", "--out", str(out)]) == 0

@@ -104,7 +104,10 @@ class CompiledEpisodes:
     def begin(
         self, which: NDArray[np.int64], parameters: Doubles, times: NDArray[np.int64], disturbed: Doubles
     ) -> None:
-        """Begin the episodes ``which`` anew: a line of numbers for each, as for ``compile_rows``."""
+        """Begin the episodes ``which`` anew: a line of numbers for each, as for ``compile_rows``.
+
+        They are taken on by one communication step, so that every model has seen the outputs of the others.
+        """
         lines: list[NDArray[Any]] = [np.ascontiguousarray(which, dtype=np.int64)]
         for array, width, kind in zip(
             (parameters, times, disturbed), self._shapes, (np.float64, np.int64, np.float64), strict=True

@@ -26,7 +26,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.compiled_batch",),
     ("fmus.compiled_episodes",),
     ("fmus.build",),
-    ("fmus.own_model", "fmus.sbom"),
+    ("fmus.own_model", "fmus.policy_fmu", "fmus.sbom"),
     ("orchestrator.text",),
     ("orchestrator.scenario",),
     ("orchestrator.cosim",),

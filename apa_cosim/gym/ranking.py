@@ -14,6 +14,7 @@ from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.policies import OnnxPolicy, Policy, RandomPolicy
 from apa_cosim.gym.recorded import CompiledSlave
 from apa_cosim.gym.scene_source import SceneSource
+from apa_cosim.runs import with_foreign
 from controller_fmu import System
 from fmus.compiled_episodes import RUNNING
 from modelkit.variables import variables
@@ -22,7 +23,7 @@ from orchestrator.scenario.models import models_for
 from orchestrator.scenario.obstacle_map import map_of
 from orchestrator.scenario.scenario import DONE, Scenario
 from orchestrator.session.foreign import ImportedFmus, fmu_of
-from orchestrator.session.session import Messages, make_instances, run_instances
+from orchestrator.session.session import Messages, run_instances
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.verdict.confidence import wilson
 from orchestrator.verdict.summary import summarize
@@ -120,15 +121,10 @@ def for_system(scenario: Scenario, system: str) -> Scenario:
     return whole.model_copy(update={"controller": {**whole.controller, **map_of(whole)}})
 
 
-def _run(scenario: Scenario, foreign: ImportedFmus) -> SceneOutcome:
-    instances: list[FmuInstance]
+def _run(scenario: Scenario, given: ImportedFmus) -> SceneOutcome:
+    scenario, foreign = with_foreign(scenario, None, given)
     messages = Messages()
-    if foreign.files:
-        instances = make_instances(scenario, None, messages, foreign)
-    else:
-        instances = [
-            CompiledSlave(name, model, scenario.parameters_for(name)) for name, model in scenario.models.items()
-        ]
+    instances = [_instance(name, scenario, foreign, messages) for name in scenario.places]
     try:
         ran = run_instances(scenario, instances, messages, foreign=foreign)
     finally:
@@ -136,3 +132,9 @@ def _run(scenario: Scenario, foreign: ImportedFmus) -> SceneOutcome:
             instance.close()
     summary = summarize(ran.recording, scenario, ran.wall_time)
     return SceneOutcome(summary.outcome, summary.reason, summary.duration, summary.penetration > 0.0)
+
+
+def _instance(name: str, scenario: Scenario, foreign: ImportedFmus, messages: Messages) -> FmuInstance:
+    if name in foreign.files:
+        return foreign.make_instance(name, foreign.files[name], scenario.parameters_for(name), messages.from_fmu)
+    return CompiledSlave(name, scenario.models[name], scenario.parameters_for(name))

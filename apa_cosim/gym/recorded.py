@@ -48,7 +48,7 @@ class RecordedEpisode(NamedTuple):
             CompiledSlave(name, scenario.models[name], scenario.parameters_for(name))
             for name in ("vehicle", "controller")
         )
-        driven = DrivenSlave(controller, self.actions, round(self.period * 1e9))
+        driven = DrivenSlave(controller, self.actions, scenario.step_ns, round(self.period * 1e9))
         try:
             ran = run_instances(scenario, [vehicle, driven], Messages(), log=None if log is None else Path(log))
         finally:
@@ -96,17 +96,18 @@ class CompiledSlave:
 
 
 class DrivenSlave:
-    """The policy's controller, whose actions are those of an episode."""
+    """The policy's controller, whose actions are those of an episode: the first one comes after the first step."""
 
     has_variable_step = True
 
-    def __init__(self, controller: CompiledSlave, actions: Array, period_ns: int) -> None:
-        self._controller, self._actions, self._period_ns = controller, actions, period_ns
+    def __init__(self, controller: CompiledSlave, actions: Array, first_ns: int, period_ns: int) -> None:
+        self._controller, self._actions, self._first_ns, self._period_ns = controller, actions, first_ns, period_ns
         self.name, self.identity = controller.name, controller.identity
         self.inputs, self.outputs, self.parameters = controller.inputs, controller.outputs, controller.parameters
         first = self.inputs.index["action[1]"]
         self._places = slice(first, first + ACTION_COUNT)
         self._t_ns = -1
+        """-1: not started."""
 
     def initialize(self, stop_ns: int) -> None:
         """Initialize the controller."""
@@ -119,7 +120,7 @@ class DrivenSlave:
     def fetch_outputs(self) -> None:
         """Copy the latest outputs; give the action of the period that has begun."""
         self._controller.fetch_outputs()
-        number = self._t_ns // self._period_ns
+        number = (self._t_ns - self._first_ns) // self._period_ns
         if 0 <= number < len(self._actions):
             self.inputs.values[self._places] = self._actions[number]
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from controller_fmu.interface import Reason
 from controller_fmu.policy.params import PolicyParams, ToleranceParams
-from controller_fmu.policy.signals import ManualRequest, PolicyInput, PolicyOutput, PolicyPhase
+from controller_fmu.policy.signals import ACTION_COUNT, ManualRequest, PolicyInput, PolicyOutput, PolicyPhase
 from modelkit.maths import clamp, is_finite, wrap_angle
 from modelkit.vocabulary import Gear, Pose
 
@@ -37,6 +37,8 @@ class PolicyState(NamedTuple):
     """Of the last motion: 1 forward, -1 reverse, 0 none yet."""
     manoeuvres: int = 0
     lever: int = Gear.PARK
+    action: tuple[float, ...] = (0.0,) * ACTION_COUNT
+    """The last one acted on."""
     outputs: PolicyOutput = PolicyOutput()
 
 
@@ -58,7 +60,7 @@ def policy_step(
         return state._replace(time_ns=end_ns), state.outputs
     period_ns = math.floor(params.sample_time * 1e9 + 0.5)
     samples = (end_ns - state.next_sample_ns + period_ns - 1) // period_ns
-    state = _sample(state, inputs, params)
+    state = _sample(state._replace(action=inputs.action), inputs, params)
     return state._replace(time_ns=end_ns, next_sample_ns=state.next_sample_ns + samples * period_ns), state.outputs
 
 

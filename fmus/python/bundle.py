@@ -31,7 +31,7 @@ if sys.version_info < {minimum}:
     raise ImportError("this FMU needs Python %d.%d or later, its host has %d.%d" % ({minimum} + sys.version_info[:2]))
 
 from {root}.fmus.python.layout import Layout
-from {root}.fmus.python.slave import ModelSlave
+from {root}.fmus.python.{module} import {base}
 from {root}.{package} import {attribute}
 
 NAMESPACE = globals()
@@ -42,7 +42,18 @@ class {script}({base}):
     model = {model}
     build = "{hash}"
     layout = Layout(model)
-'''
+{more}'''
+
+
+class SlaveClass(NamedTuple):
+    """The class behind the FMI binary: its file in ``fmus.python``, its name, and further lines of its subclass."""
+
+    module: str = "slave"
+    name: str = "ModelSlave"
+    more: str = ""
+
+
+MODEL_SLAVE = SlaveClass()
 
 
 class Bundle(NamedTuple):
@@ -54,7 +65,7 @@ class Bundle(NamedTuple):
     files: dict[str, bytes]
 
 
-def bundle(model: Model) -> Bundle:
+def bundle(model: Model, slave: SlaveClass = MODEL_SLAVE) -> Bundle:
     """Return all sources that ``model`` needs, with their imports pointing below the hashed root package."""
     name = model.package.__name__
     if "." in name:
@@ -62,7 +73,7 @@ def bundle(model: Model) -> Bundle:
     originals = {
         **_package("modelkit", modelkit.__file__),
         **_package(name, model.package.__file__),
-        **{f"fmus/{file}": (_folder(fmus.__file__) / file).read_bytes() for file in SLAVE_FILES},
+        **{f"fmus/{file}": (_folder(fmus.__file__) / file).read_bytes() for file in _slave_files(slave)},
         "fmus/__init__.py": b"",
         **{f"pythonfmu/{file}": (runtime_folder() / file).read_bytes() for file in RUNTIME_FILES},
         "pythonfmu/__init__.py": RUNTIME_INIT,
@@ -70,7 +81,9 @@ def bundle(model: Model) -> Bundle:
     script = SCRIPT.format(
         root="{root}",
         script="{script}",
-        base="ModelSlave",
+        module=slave.module,
+        base=slave.name,
+        more=slave.more,
         hash="{hash}",
         package=name,
         minimum=MIN_PYTHON,
@@ -83,6 +96,11 @@ def bundle(model: Model) -> Bundle:
     files[f"{root}/__init__.py"] = b""
     files[f"{module}.py"] = script.format(root=root, script=module.title(), hash=digest).encode()
     return Bundle(digest, module, files)
+
+
+def _slave_files(slave: SlaveClass) -> tuple[str, ...]:
+    own = f"python/{slave.module}.py"
+    return SLAVE_FILES if own in SLAVE_FILES else (*SLAVE_FILES, own)
 
 
 def rewrite(source: bytes, path: str, root: str, tops: set[str]) -> bytes:
@@ -135,12 +153,22 @@ def _check_import(module: str, where: str, tops: set[str]) -> None:
 
 
 def _model_names(model: Model) -> dict[str, str]:
-    """Return the name under which the model's package offers it, and how it is made from that."""
+    """Return the name under which the model's package offers it, and how it is made from that.
+
+    A model may differ from that of the package by its name, its hidden variables and its start values.
+    """
     for name in dict.fromkeys((*vars(model.package), *getattr(model.package, "__all__", ()))):  # also what comes late
         value = getattr(model.package, name)
-        if isinstance(value, Model) and value == model.with_start_values({}):
+        if not isinstance(value, Model):
+            continue
+        own = value._replace(name=model.name, view=value.view._replace(hidden=model.view.hidden))
+        if own == model.with_start_values({}):
             starts = [item for item in model.view.starts if model.shows(item[0])]
-            return {"attribute": name, "model": f"{name}.with_start_values(dict({starts!r}))" if starts else name}
+            text = name
+            if own != value:
+                hidden = f"frozenset({sorted(model.view.hidden)!r})"
+                text = f"{name}._replace(name={model.name!r}, view={name}.view._replace(hidden={hidden}))"
+            return {"attribute": name, "model": f"{text}.with_start_values(dict({starts!r}))" if starts else text}
     raise ValueError(f"{model.package.__name__}: it must hold the Model of {model.name}")
 
 

@@ -1,11 +1,13 @@
 """From a model package to an FMI 2.0 co-simulation FMU that runs the package's Python code (PythonFMU inside)."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.fmu_documentation import documentation, reference_result
-from fmus.python.bundle import bundle, runtime_folder, runtime_licence, runtime_version
+from fmus.python.bundle import MODEL_SLAVE, SlaveClass, bundle, runtime_folder, runtime_licence, runtime_version
+from fmus.python.layout import POLICY_FILE
 from modelkit.model import Model
 
 NEEDS = """
@@ -13,6 +15,10 @@ NEEDS = """
 linux64 or win64. A host that is a Python program (FMPy, libcosimpy, OMSimulator's Python package) needs nothing more;
 any other host must have the library of Python 3 loaded. Only Python's standard library is used: the part of PythonFMU
 that runs at simulation time is inside, numpy is not needed.</p>
+"""
+NEEDS_OF_POLICY = """
+<p>It runs a policy, <code>resources/policy.onnx</code>, with numpy and onnxruntime, which the Python of the host must
+have.</p>
 """
 LIMITS = """
 <p>{where} the library of PythonFMU {version} is called as it is. The path into which the FMU is extracted must be
@@ -31,24 +37,36 @@ BEHIND = "pythonfmu-export.so"
 """The library of PythonFMU behind ours."""
 
 
-def build(model: Model, out_dir: Path, front: bytes | None = None) -> Path:
+class PolicyFile(NamedTuple):
+    """What makes an FMU of the policy's controller that of one policy."""
+
+    network: bytes
+    """The content of its ONNX file."""
+    period_ns: int
+    """Between two actions."""
+
+
+def build(model: Model, out_dir: Path, front: bytes | None = None, policy: PolicyFile | None = None) -> Path:
     """Return the path of ``out_dir/<model.name>.fmu``; written only if its content would change.
 
-    ``front`` is the library that stands before PythonFMU's on linux64: see ``python_front.c``.
+    ``front`` is the library that stands before PythonFMU's on linux64: see ``python_front.c``. ``policy``: the FMU
+    carries it out, and has no reference result, as onnxruntime is not ours.
     """
-    files = _content(model, front)
+    files = _content(model, front, policy)
     guid = content_guid({**files, DESCRIPTION: _description(model, "")})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
         files[DESCRIPTION] = _description(model, guid)
         files["resources/guid.txt"] = guid.encode()
-        write_archive(path, {**files, **reference_result(model)})
+        write_archive(path, {**files, **(reference_result(model) if policy is None else {})})
     return path
 
 
-def _content(model: Model, front: bytes | None) -> dict[str, bytes]:
+def _content(model: Model, front: bytes | None, policy: PolicyFile | None) -> dict[str, bytes]:
     """Return all files except those that follow from the others: description, GUID, reference result."""
-    sources = bundle(model)
+    more = "" if policy is None else f"    period_ns = {policy.period_ns}\n"
+    slave = MODEL_SLAVE if policy is None else SlaveClass("policy_slave", "PolicySlave", more)
+    sources = bundle(model, slave)
     limits = LIMITS.format(where="On win64" if front else "On linux64 and win64", version=runtime_version())
     files = {f"resources/{path}": text for path, text in sources.files.items()}
     files["resources/slavemodule.txt"] = sources.script.encode()
@@ -56,7 +74,10 @@ def _content(model: Model, front: bytes | None) -> dict[str, bytes]:
     if front:
         first = f"binaries/linux64/{model.name}.so"
         files |= {f"binaries/linux64/{BEHIND}": files[first], first: front}
-    files.update(documentation(model, NEEDS + (FRONT if front else "") + limits))
+    if policy is not None:
+        files[f"resources/{POLICY_FILE}"] = policy.network
+    needs = NEEDS if policy is None else NEEDS + NEEDS_OF_POLICY
+    files.update(documentation(model, needs + (FRONT if front else "") + limits))
     files["documentation/licenses/pythonfmu.txt"] = runtime_licence()
     return files
 

@@ -12,6 +12,9 @@ from modelkit.variables import constructor, flattener, limits_of, variables
 
 Values = list[Any]
 
+POLICY_FILE = "policy.onnx"
+"""The network of an FMU that carries out a policy, in its resources."""
+
 
 class Layout:
     """The places and kinds of all variables, and fast functions between the list and the model's types."""

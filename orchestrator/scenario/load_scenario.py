@@ -36,6 +36,10 @@ More = Mapping[str, Sequence[Variable]]
 """Further parameters, by owner."""
 
 
+KNOWN_SLOT = "slot."
+"""Begins the parameters of a controller that knows its slot."""
+
+
 class _Given(NamedTuple):
     """A raw value and the file it was written in, for error messages."""
 
@@ -74,7 +78,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
         scenario = Scenario(**merged, file=str(path), overrides=overrides)
     except ValidationError as error:
         raise explain(error, _source_of(place_in(error), layers, path), FIELDS) from None
-    return _with_parameters(scenario, more).model_copy(update={"controller": _target_parameters(scenario)})
+    return _with_parameters(scenario, more).model_copy(update={"controller": _target_parameters(scenario, more)})
 
 
 def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
@@ -146,9 +150,9 @@ def _source_of(key: str, layers: list[Layer], path: Path) -> object:
     return next((file for content, file in reversed(layers) if top in content), path)
 
 
-def _target_parameters(scenario: Scenario) -> dict[str, float | int | bool]:
-    """Return the controller's parameters with the target it is told: the scenario's, unless they say another."""
-    own = scenario.controller
+def _target_parameters(scenario: Scenario, more: More) -> dict[str, float | int | bool]:
+    """Return the controller's parameters with target and slot: the scenario's, unless they say others."""
+    own = _with_slot(scenario, more)
     if scenario.target is None:
         if any(name.startswith("target.") for name in own):
             text = "the scenario has no target; write target: {x: .., y: .., heading: ..}, which the controller is told"
@@ -160,6 +164,14 @@ def _target_parameters(scenario: Scenario) -> dict[str, float | int | bool]:
         return own
     true = {f"target.{name}": float(value) for name, value in scenario.target.model_dump().items()}
     return {**own, **{name: value for name, value in (true | map_of(scenario)).items() if name not in own}}
+
+
+def _with_slot(scenario: Scenario, more: More) -> dict[str, float | int | bool]:
+    """Return the controller's parameters with the slot, if it has parameters for one that nobody has set."""
+    own, slot = scenario.controller, scenario.slot
+    known = {item.name for item in (*variables(scenario.models["controller"].params), *more.get("controller", ()))}
+    given = {} if slot is None else {f"{KNOWN_SLOT}{name}": float(value) for name, value in slot.model_dump().items()}
+    return {**{name: value for name, value in given.items() if name in known}, **own} if given.keys() <= known else own
 
 
 def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:

@@ -104,7 +104,6 @@ def test_pedals_move_the_car_in_both_directions() -> None:
 def test_the_observation_is_the_pose_in_the_frame_of_the_target() -> None:
     env = ParkingEnv("perpendicular", body="kinematic")
     seen, _ = env.reset(seed=8)
-    seen, *_ = env.step(np.zeros(2, dtype=np.float32))
     scenario = env.episode().scenario
     assert scenario.target is not None
     x, y, heading = scenario.target.pose

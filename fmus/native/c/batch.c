@@ -434,8 +434,9 @@ static void show(const Access *access, const Episode *episode, double *seen) {
     for (int64_t k = 0; k < access->seen_count; k++) seen[k] = look(episode->seen[k]);
 }
 
-/* Begin the episodes `which`: numbers of each as in batch_rows, in the order of `which`; rows, seen and progress are
- * those of all. Returns 0, or -1 if there is no memory. */
+/* Begin the episodes `which` and take them on by one step, so that every model has seen what the others put out: numbers
+ * of each as in batch_rows, in the order of `which`; rows, seen and progress are those of all. Returns 0, or -1 if there
+ * is no memory. */
 LIBRARY_EXPORT int64_t episodes_begin(Episodes *all, int64_t count, const int64_t *which, const double *params,
                                       const int64_t *times, const double *faults, double *rows, double *seen,
                                       int64_t *progress) {
@@ -452,6 +453,10 @@ LIBRARY_EXPORT int64_t episodes_begin(Episodes *all, int64_t count, const int64_
             return -1;
         begin_notes(&episode->runner, row + 2);
         look_at(all->access, episode, row);
+        if (episode->progress == GOES_ON) {
+            advance(&episode->runner, &episode->course);
+            look_at(all->access, episode, row);
+        }
         show(all->access, episode, seen + n * all->access->seen_count);
         progress[n] = episode->progress;
     }

@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   apa new controller my_controller          a folder my_controller: law, scenario, tests, README
   apa run my_controller/scenario.yaml       compiles it and drives it
   apa run guo2015-case3 --controller my_controller:MODEL
+  apa new controller learned --from policy.onnx   a folder learned: an FMU that runs the policy, scenario, README
   apa new vehicle my_car
   apa new scenario my-slot                  my-slot.yaml: a slot, its neighbours, kerb and target from one key
   apa new scenario --controller their.fmu   their.yaml: connections suggested by names, units and descriptions
@@ -35,6 +36,8 @@ SUFFIX = ".txt"
 RESERVED = ("apa_cosim", "fmus", "modelkit", "orchestrator", "pythonfmu", "vehicle_fmu", "controller_fmu")
 BASE = "guo2015-case4"
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
+POLICY_PERIOD = 0.2
+"""Between two actions of a policy [s]: that of the environments."""
 START_RANGE = 0.1
 """A new study varies the start pose by so much to either side [m]."""
 
@@ -47,6 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out", type=Path, default=Path(), metavar="DIR", help="output folder (default: current folder)"
+    )
+    parser.add_argument("--from", dest="policy", type=Path, metavar="ONNX", help="controller: a learned policy")
+    parser.add_argument(
+        "--period", type=float, default=POLICY_PERIOD, metavar="S", help="--from: between actions (0.2)"
     )
     parser.add_argument("--controller", metavar="FMU", help="scenario: a third-party FMU as controller")
     parser.add_argument("--vehicle", metavar="FMU", help="scenario: a third-party FMU as vehicle")
@@ -77,6 +84,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.scenario:
         raise BadInput("needs --fmu: the pipelines of a package run the scenario in it", key="--scenario")
     name = _package_name(arguments.name)
+    if arguments.policy is not None:
+        if kind != "controller":
+            raise BadInput("is for apa new controller", key="--from")
+        return _policy(arguments.out, name, arguments.policy, arguments.period)
     return _pipelines(arguments.out, name) if kind == "ci" else _package(kind, arguments.out, name)
 
 
@@ -111,6 +122,29 @@ def _package(kind: str, out: Path, name: str) -> int:
         raise
     trust_folder(folder)
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
+    return 0
+
+
+def _policy(out: Path, name: str, network: Path, period: float) -> int:
+    """Write the FMU of a learned policy, a scenario and a README."""
+    from fmus.policy_fmu import BadPolicy, build_policy_fmu
+
+    folder = out / name
+    if folder.exists():
+        raise BadInput("is there already", file=folder)
+    if not network.is_file():
+        raise BadInput("no such file", file=network)
+    try:
+        build_policy_fmu(name, network, period, folder)
+        for template in sorted((TEMPLATE_FOLDER / "policy").glob(f"*{SUFFIX}")):
+            _write(template, folder / template.name.removesuffix(SUFFIX), name, period=f"{period:g}")
+    except BadPolicy as error:
+        raise BadInput(str(error), file=network) from error
+    except OSError:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    trust_folder(folder)
+    print(f"{folder}: {name}.fmu, scenario, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
 

@@ -10,12 +10,14 @@ import numpy as np
 from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.contact import contact_facts
-from orchestrator.verdict.summary import summarize
+from orchestrator.verdict.summary import Summary, summarize
 
+KINEMATIC = "kinematic"
 BODIES = {
-    "kinematic": ("vehicle.body=kinematic",),
+    KINEMATIC: ("vehicle.body=kinematic",),
     "double_track": (
         "vehicle.body=double_track",
         "vehicle.steering.dead_time=40 ms",
@@ -45,10 +47,18 @@ class DrivenScene(NamedTuple):
     """[s]"""
 
 
+class SceneRun(NamedTuple):
+    """A drive with all that is known of it."""
+
+    scenario: Scenario
+    recording: Recording
+    summary: Summary
+
+
 def drive_scene(
     name: str, body: str, files: Mapping[str, Path] | None, kind: str, interrupt: Interrupt | None = None
-) -> tuple[DrivenScene, Recording]:
-    """Return how the scene ``name`` (a file) was driven on ``body``, and the recording."""
+) -> tuple[DrivenScene, SceneRun]:
+    """Return how the scene ``name`` (a file) was driven on ``body``, and the run itself."""
     scenario = load_scenario(name, BODIES[body])
     ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
     summary = summarize(ran.recording, scenario, ran.wall_time)
@@ -67,4 +77,4 @@ def drive_scene(
         manoeuvres,
         summary.duration,
     )
-    return drive, ran.recording
+    return drive, SceneRun(scenario, ran.recording, summary)

@@ -2,11 +2,12 @@
 
 import csv
 import io
+import math
 import statistics
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from orchestrator.benchmark.driving import DrivenScene
+from orchestrator.benchmark.driving import KINEMATIC, DrivenScene
 from orchestrator.benchmark.scenes import SceneRow, row_as_json
 
 SHORT = {"kinematic": "kinematic", "double_track": "double track"}
@@ -26,6 +27,11 @@ class GroupFigures(NamedTuple):
     """Processor time [s]."""
     planning_worst: float
     slowest_sample: float
+    optima: int
+    """Valid ones."""
+    time_ratio: float
+    """Median of driven over optimal time; NaN without an optimum."""
+    length_ratio: float
 
     def line(self) -> str:
         """Return the figures as one sentence."""
@@ -35,8 +41,14 @@ class GroupFigures(NamedTuple):
         return (
             f"{self.group}: {self.planned} of {self.scenes} planned, {driven}; "
             f"planning {self.planning_median * 1e3:.1f} ms median, {self.planning_worst * 1e3:.0f} ms worst, "
-            f"slowest sample {self.slowest_sample * 1e3:.1f} ms"
+            f"slowest sample {self.slowest_sample * 1e3:.1f} ms{self._beside_optimum()}"
         )
+
+    def _beside_optimum(self) -> str:
+        if not self.optima:
+            return ""
+        ratios = f"time {self.time_ratio:.2f}, length {self.length_ratio:.2f}"
+        return f"; {self.optima} valid optima, median of driven over optimal {ratios}"
 
 
 def figures_of(rows: Sequence[SceneRow]) -> list[GroupFigures]:
@@ -52,6 +64,7 @@ def _figures(group: str, rows: Sequence[SceneRow]) -> GroupFigures:
     bodies = list(dict.fromkeys(body for row in rows for body in row.drives))
     driven = {body: [row.drives[body] for row in rows if body in row.drives] for body in bodies}
     times = [row.plan.time for row in rows]
+    optima = [row.optimum for row in rows if row.optimum is not None and not row.optimum.reason]
     return GroupFigures(
         group,
         len(rows),
@@ -61,6 +74,9 @@ def _figures(group: str, rows: Sequence[SceneRow]) -> GroupFigures:
         statistics.median(times),
         max(times),
         max(max(row.plan.sample_times, default=0.0) for row in rows),
+        len(optima),
+        statistics.median([item.time_ratio for item in optima] or [math.nan]),
+        statistics.median([item.length_ratio for item in optima] or [math.nan]),
     )
 
 
@@ -68,7 +84,18 @@ def table_lines(rows: Sequence[SceneRow]) -> list[list[str]]:
     """Return head and rows of the table for people: of the last body all figures, of others whether it parked."""
     bodies = list(dict.fromkeys(body for row in rows for body in row.drives))
     head = ["scene", "planned", "slowest sample", "margin", *(SHORT[body] for body in bodies)]
-    return [[*head, "clearance", "length", "moves", "time"], *(_line(row, bodies) for row in rows)]
+    head += ["clearance", "length", "moves", "time"]
+    if all(row.optimum is None for row in rows):
+        return [head, *(_line(row, bodies) for row in rows)]
+    return [[*head, "time / optimum", "length / optimum"], *(_line(row, bodies) + _ratios(row) for row in rows)]
+
+
+def _ratios(row: SceneRow) -> list[str]:
+    """Return the cells beside the optimum; an invalid one is said to be so."""
+    optimum = row.optimum
+    if optimum is None:
+        return ["", ""]
+    return ["invalid", ""] if optimum.reason else [f"{optimum.time_ratio:.2f}", f"{optimum.length_ratio:.2f}"]
 
 
 def _line(row: SceneRow, bodies: Sequence[str]) -> list[str]:
@@ -97,7 +124,8 @@ def csv_text(rows: Sequence[SceneRow]) -> str:
     writer = csv.writer(out, lineterminator="\n")
     plan_head = ["planned", "reason", "steps", "margin [m]", "planning time [s]", "samples", "slowest sample [s]"]
     drive_head = ["parked", "contact", "clearance [m]", "length [m]", "manoeuvres", "time [s]", "drive reason"]
-    writer.writerow(["group", "scene", "corners", *plan_head, "body", *drive_head])
+    optimum_head = ["optimal time [s]", "optimal length [m]", "time ratio", "length ratio", "optimum invalid"]
+    writer.writerow(["group", "scene", "corners", *plan_head, "body", *drive_head, *optimum_head])
     for row in rows:
         plan = row.plan
         times = [plan.time, len(plan.sample_times), max(plan.sample_times, default=0.0)]
@@ -105,7 +133,9 @@ def csv_text(rows: Sequence[SceneRow]) -> str:
         first += [plan.found, plan.reason, plan.steps, plan.margin, *times]
         for body, drive in row.drives.items() or [("", None)]:
             cells = [""] * len(drive_head) if drive is None else [*drive[:1], *drive[2:], drive.reason]
-            writer.writerow([*first, body, *cells])
+            best = row.optimum if body == KINEMATIC else None
+            figures = [""] * len(optimum_head) if best is None else [*best[1:], best.reason]
+            writer.writerow([*first, body, *cells, *figures])
     return out.getvalue()
 
 
@@ -113,6 +143,10 @@ def as_json(rows: Sequence[SceneRow], command: str) -> dict[str, Any]:
     """Return all rows and figures as plain data."""
     return {
         "command": command,
-        "groups": [item._asdict() for item in figures_of(rows)],
+        "groups": [_as_data(item) for item in figures_of(rows)],
         "scenes": [row_as_json(row) for row in rows],
     }
+
+
+def _as_data(figures: GroupFigures) -> dict[str, Any]:
+    return {name: None if value != value else value for name, value in figures._asdict().items()}

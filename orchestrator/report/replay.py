@@ -3,9 +3,12 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from fmus.files import write_whole
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.decimation import decimate
 from orchestrator.log.line import Line
@@ -31,13 +34,24 @@ KEYS = (
 KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finished": "warn", "failed": "bad"}
 
 
-def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line], live: str = "") -> None:
+def write_replay(
+    path: Path,
+    recording: Recording,
+    summary: Summary,
+    words: list[Line],
+    live: str = "",
+    optimal_path: Array | None = None,
+) -> None:
     """Write the page of a run to ``path``; fewer instants are kept if it would pass 1 MB."""
-    write_whole(path, replay_page(recording, summary, words, live))
+    write_whole(path, replay_page(recording, summary, words, live, optimal_path))
 
 
-def replay_page(recording: Recording, summary: Summary, words: list[Line], live: str = "") -> str:
+def replay_page(
+    recording: Recording, summary: Summary, words: list[Line], live: str = "", optimal_path: Array | None = None
+) -> str:
     """Return the page of a run; ``live``: where the page is on which it is driven.
+
+    ``optimal_path``: points (p, 2) [m] of the time-optimal motion, drawn beside the planned path.
 
     Raises ``BadInput`` if the run has no instant to show.
     """
@@ -47,14 +61,23 @@ def replay_page(recording: Recording, summary: Summary, words: list[Line], live:
     shown = decimate(recording, [check.t for check in summary.checks])
     whole = recording if shown is not recording else None
     for most in MOST_ROWS:
-        text = _page(shown, summary, words, most, live, whole)
+        text = _page(shown, summary, words, most, PageExtras(live, optimal_path), whole)
         if len(text.encode()) < LARGEST_PAGE:
             break
     return text
 
 
+class PageExtras(NamedTuple):
+    """What few pages have besides the run."""
+
+    live: str
+    """Where the page is on which the run is driven; empty: nowhere."""
+    optimal_path: Array | None
+    """Points (p, 2) [m] of the time-optimal motion."""
+
+
 def _page(
-    recording: Recording, summary: Summary, words: list[Line], most: int, live: str, whole: Recording | None
+    recording: Recording, summary: Summary, words: list[Line], most: int, extras: PageExtras, whole: Recording | None
 ) -> str:
     arrays = Arrays()
     scenario = recording.info.get("scenario", {})
@@ -65,6 +88,8 @@ def _page(
     keep = [check.t for check in summary.checks]
     run = run_data(recording, arrays, words, label="", most=most, keep=keep, whole=whole)
     run["checks"] = check_rows(summary.checks)
+    if extras.optimal_path is not None:
+        run["scene"]["optimum"] = np.round(extras.optimal_path - np.array(run["scene"]["origin"]), 3).tolist()
     header = {
         "title": title,
         "name": summary.scenario,
@@ -75,7 +100,7 @@ def _page(
         "ribbons": ribbons_of([recording]),
         "runs": [run],
         "foot": foot(recording, run["rows"]),
-        "live": live,
+        "live": extras.live,
         "charts": charts_of(recording),
     }
     return page(title, arrays.pack(header))

@@ -2,11 +2,15 @@
 
 import argparse
 
-ACTIONS = {"parking": "plan and drive every scene of a benchmark, as one table"}
+ACTIONS = {
+    "parking": "plan and drive every scene of a benchmark, as one table",
+    "optimal": "compare a drive with the time-optimal motion at equal limits",
+}
 """Action -> what it does; each is a module of this folder."""
 EXAMPLES = """examples:
   apa bench parking
   apa bench parking tpcap parkbench --out results
+  apa bench optimal valet-dead-end
 """
 
 

@@ -6,14 +6,14 @@ import shlex
 from pathlib import Path
 
 from fmus.files import write_whole
-from orchestrator.benchmark.driving import BODIES
+from orchestrator.benchmark.driving import BODIES, KINEMATIC
 from orchestrator.benchmark.scenes import ROWS, SceneRow, rows_of, scenes_in
 from orchestrator.benchmark.table import as_json, csv_text, figures_of, table_lines
 from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.text.console import Meter, console, say
-from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
+from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
 from orchestrator.text.owned import lock_folder
 
 EXAMPLES = """examples:
@@ -21,6 +21,7 @@ EXAMPLES = """examples:
   apa import tpcap cases --out tpcap             scenes of TPCAP, ParkBench: see apa import --help
   apa bench parking tpcap parkbench --out results
   apa bench parking parkbench --body kinematic --json > parkbench.json
+  apa bench parking tpcap --optimal              also beside the time-optimal motion: apa bench optimal --help
 
 kinematic: no errors. double_track: tyres, 40 ms dead time and 50 ms lag of the steering, 30 mrad backlash, 80 ms brake
 lag, errors of odometry and noise of the ultrasonic sensors.
@@ -39,6 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, default=Path("runs/bench/parking"), metavar="DIR", help="output folder (runs/bench/parking)"
     )
+    parser.add_argument(
+        "--optimal",
+        action="store_true",
+        help="compare each drive with the time-optimal motion near it (some seconds each)",
+    )
     parser.add_argument("--fresh", action="store_true", help="plan and drive all scenes again")
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--json", action="store_true", help="print JSON instead of the table")
@@ -49,7 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Plan and drive, print the table. Returns 0 if all passed, 1 if not, 130 if interrupted."""
     out: Path = arguments.out
     bodies = list(dict.fromkeys(arguments.body or BODIES))
-    scenes = scenes_in(arguments.places, bodies)
+    if arguments.optimal and KINEMATIC not in bodies:
+        raise BadInput("the optimum is compared with the kinematic drive: add --body kinematic", key="--optimal")
+    scenes = scenes_in(arguments.places, bodies, arguments.optimal)
     interrupt = Interrupt()
     rows: list[SceneRow] = []
     with lock_folder(out):
@@ -58,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
                 file.unlink()
         files = fmu_files("native", say)
         with on_interrupt(interrupt), Meter("apa bench parking", len(scenes), "scenes") as meter:
-            for row in rows_of(scenes, bodies, (files, "native"), out, interrupt):
+            for row in rows_of(scenes, bodies, (files, "native"), out, interrupt, arguments.optimal):
                 rows.append(row)
                 meter.at(len(rows), row.scene.name)
         content = as_json(rows, shlex.join(["apa", *arguments.words]))

@@ -101,6 +101,17 @@ function drawPlan(scene, run, plan) {
   g.setLineDash([]);
 }
 
+// The path of the time-optimal motion that the drive is compared with.
+function drawOptimum(scene, points) {
+  const g = scene.context;
+  g.setLineDash([2, 5]);
+  g.lineWidth = 2;
+  g.strokeStyle = color("good");
+  scene.trace(points);
+  g.stroke();
+  g.setLineDash([]);
+}
+
 // The points the controller has in mind, by name: Q1 to Q4, P1 to P4, LA1 and LA2.
 function drawKeyPoints(scene, run, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
@@ -125,6 +136,7 @@ function drawKeyPoints(scene, run, t) {
 function drawPaths(scene, run, number, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
   g.lineJoin = g.lineCap = "round";
+  if (scene.layers.planned && run.scene.optimum) drawOptimum(scene, run.scene.optimum);
   if (scene.layers.planned && number === 0) { drawPlan(scene, run, run.plan(t)); drawKeyPoints(scene, run, t); }
   if (scene.layers.trail) drawTrail(scene, run, number, t);
   if (!scene.layers.driven) return;

@@ -1,0 +1,1 @@
+"""The time-optimal motion near a driven one, at equal limits."""

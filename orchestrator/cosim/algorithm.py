@@ -7,10 +7,11 @@ last one ends there, and all outputs are read then.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from orchestrator.cosim.connections import Connection, connect
 from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices, all_values
+from orchestrator.cosim.signal_blocks import Times
 
 
 class Observer(Protocol):
@@ -21,6 +22,14 @@ class Observer(Protocol):
 
     def on_terminate(self, end: "Termination") -> None:
         """The run is over; called once, whatever the reason."""
+
+
+@runtime_checkable
+class BlockObserver(Protocol):
+    """An observer that can also look at many exchanges at once."""
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Look at exchanges that followed one another: their times [ns], and all values (n, values) of each."""
 
 
 class Manipulator(Protocol):
@@ -38,6 +47,14 @@ class StopCondition(Protocol):
 
     def stop_reason(self, t_ns: int) -> str:
         """Return the reason to end now, or an empty string."""
+
+
+@runtime_checkable
+class BlockStopCondition(Protocol):
+    """A stop condition that can also look at many exchanges at once."""
+
+    def first_reached(self, t_ns: Times, rows: Array) -> tuple[int, str] | None:
+        """Return the first of exchanges that followed one another at which the run is over, and the reason."""
 
 
 class Termination(NamedTuple):

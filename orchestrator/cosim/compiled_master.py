@@ -1,8 +1,8 @@
 """The Python master's exchange as compiled calls: FMUs driven through their C functions, without the GIL.
 
 ``fmus/native/c/master.c`` does a block of exchanges at a time and writes all signals of each into rows
-allocated once. Afterwards the rows are laid into the instances' arrays one by one, and the observers
-and endings see them as if they had been there: log, recording and progress bar need to know nothing.
+allocated once. Afterwards the observers and endings see the rows of the block at once, or one by one in the
+instances' arrays as if they had been there.
 An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
 
 It covers FMUs of any kind in this process. Faults change inputs between exchange and step, so a run with
@@ -17,10 +17,19 @@ from typing import Any
 import numpy as np
 
 from fmus.native.structures import Long, Pointer, structure
-from orchestrator.cosim.algorithm import CoSimulation, Termination, last_exchange
+from orchestrator.cosim.algorithm import (
+    BlockObserver,
+    BlockStopCondition,
+    CoSimulation,
+    Observer,
+    StopCondition,
+    Termination,
+    last_exchange,
+)
 from orchestrator.cosim.connections import Connection
-from orchestrator.cosim.fmu_instance import Indices, all_values, places_of
+from orchestrator.cosim.fmu_instance import Array, Indices, all_values, places_of
 from orchestrator.cosim.local_instance import LocalInstance, Transfer
+from orchestrator.cosim.signal_blocks import Times
 
 EXCHANGES_PER_CALL = 250
 """Exchanges per compiled call."""
@@ -95,16 +104,49 @@ class CompiledMaster(CoSimulation):
             count = plan.advance(first)
             unseen = 0 if self.observers or self.endings else max(count - 1, 0)
             rows = plan.rows_of_ports(unseen, count)
-            for row in range(unseen, count):
-                self.values[:] = rows[row - unseen]
-                t_ns = min((first + row) * self.step_ns, self.stop_ns)
+            times = np.minimum(np.arange(first + unseen, first + count, dtype=np.int64) * self.step_ns, self.stop_ns)
+            if len(times):
+                seen, reason = self._end_in_block(times, rows, first + count - 1 == plan.last)
                 for observer in self.observers:
-                    observer.on_communication_point(t_ns)
-                reason = self._over(t_ns, first + row == plan.last)
+                    self._show(observer, times[:seen], rows[:seen])
+                self.values[:] = rows[seen - 1]
                 if reason:
-                    return Termination(reason, t_ns)
+                    return Termination(reason, int(times[seen - 1]))
             first += count
             plan.check(first)
+
+    def _end_in_block(self, times: Times, rows: Array, has_last: bool) -> tuple[int, str]:
+        """Return how many exchanges of a block take place, and why the run is over after them; empty if it goes on."""
+        if self.interrupt.requested:
+            return 1, "interrupted"
+        found = (len(times), "stop_time") if has_last else (len(times), "")
+        for ending in self.endings:
+            reached = (
+                ending.first_reached(times, rows)
+                if isinstance(ending, BlockStopCondition)
+                else self._try(ending, times, rows)
+            )
+            if reached is not None and (reached[0] + 1 < found[0] or found[1] in ("", "stop_time")):
+                found = reached[0] + 1, reached[1]
+        return found
+
+    def _try(self, ending: StopCondition, times: Times, rows: Array) -> tuple[int, str] | None:
+        """Return where an ending that looks at single exchanges ends a block."""
+        for row, t_ns in enumerate(times.tolist()):
+            self.values[:] = rows[row]
+            reason = ending.stop_reason(t_ns)
+            if reason:
+                return row, reason
+        return None
+
+    def _show(self, observer: Observer, times: Times, rows: Array) -> None:
+        """Show an observer a block, exchange by exchange if it cannot look at all at once."""
+        if isinstance(observer, BlockObserver):
+            observer.observe_rows(times, rows)
+            return
+        for row, t_ns in enumerate(times.tolist()):
+            self.values[:] = rows[row]
+            observer.on_communication_point(t_ns)
 
 
 class _Plan:

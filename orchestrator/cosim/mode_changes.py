@@ -7,6 +7,7 @@ import numpy as np
 
 from orchestrator.cosim.algorithm import Termination
 from orchestrator.cosim.fmu_instance import Array, FmuInstance, Indices, all_values, places_of
+from orchestrator.cosim.signal_blocks import Times
 from orchestrator.scenario.fault import Fault
 
 DEBUG, INFO, WARNING, ERROR = 1, 2, 3, 4
@@ -45,7 +46,23 @@ class ModeChanges:
         """Say what has changed since the last exchange."""
         while self._edges and self._edges[0][0] <= t_ns:
             self._say(t_ns, WARNING, "fault", self._edges.pop(0)[1])
-        now = self._values[self._places].tobytes()
+        self._compare(t_ns, self._values[self._places].tobytes())
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Say what has changed from exchange to exchange."""
+        if self._edges:
+            for time, row in zip(t_ns.tolist(), rows, strict=True):
+                self._values[:] = row
+                self.on_communication_point(time)
+            return
+        modes = rows[:, self._places]
+        bits = modes.view(np.int64)
+        before = np.frombuffer(self._before, dtype=np.int64)
+        changed = (bits != np.vstack([before, bits[:-1]])).any(axis=1)
+        for row in np.flatnonzero(changed).tolist():
+            self._compare(int(t_ns[row]), modes[row].tobytes())
+
+    def _compare(self, t_ns: int, now: bytes) -> None:
         if now != self._before:
             self._tell(t_ns, np.frombuffer(self._before), np.frombuffer(now))
             self._before = now

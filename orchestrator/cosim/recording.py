@@ -209,6 +209,10 @@ class Recorder:
         """Copy all inputs and outputs."""
         self._blocks.append(t_ns, self._values)
 
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Copy all inputs and outputs of many exchanges."""
+        self._blocks.extend(t_ns, rows)
+
     def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""
 

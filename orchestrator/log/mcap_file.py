@@ -113,7 +113,7 @@ class McapFile:
         block[:, head:] = rows
         entries = np.column_stack((t_ns, self._chunk_size + np.arange(count) * (head + size))).astype("<u8")
         self._note(channel, count, entries.tobytes(), int(t_ns.min()), int(t_ns.max()))
-        self._add(block.tobytes())
+        self._add(block.data.cast("B"))
 
     def flush(self) -> None:
         """Write the chunk in hand, if it holds a message."""
@@ -150,7 +150,7 @@ class McapFile:
         self._size += len(data)
         self._crc = zlib.crc32(data, self._crc)
 
-    def _add(self, record: bytes) -> None:
+    def _add(self, record: bytes | memoryview) -> None:
         self._parts.append(record)
         self._chunk_size += len(record)
         if self._chunk_size >= CHUNK_SIZE and self._entries:
@@ -165,7 +165,7 @@ class McapFile:
         )
 
     def _begin_chunk(self) -> None:
-        self._parts: list[bytes] = []
+        self._parts: list[bytes | memoryview] = []
         self._chunk_size = 0
         self._chunk_first_ns = 1 << 62
         self._chunk_last_ns = 0

@@ -22,6 +22,7 @@ from modelkit.variables import Variable
 from orchestrator.cosim.algorithm import Termination
 from orchestrator.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
 from orchestrator.cosim.recording import to_json
+from orchestrator.cosim.signal_blocks import Times
 from orchestrator.drawing import scene
 from orchestrator.log.line import MAX_LINES, Line, line_of
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
@@ -87,11 +88,9 @@ class McapLog:
         self._log = self._file.add_channel("/log", Log)
         for instance in instances:
             self._write_parameters(instance)
-        named = {instance.name: instance for instance in instances}
         self._pictures: list[_Pictures] = []
-        drawn = _frame_ports(named["vehicle"]) if "vehicle" in named else []
-        if drawn:
-            self._pictures.append(_Pictures(self._file, named, scenario, drawn))
+        if _frame_columns(instances):
+            self._pictures.append(_Pictures(self._file, instances, scenario))
         size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
         rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
@@ -104,12 +103,25 @@ class McapLog:
     def on_communication_point(self, t_ns: int) -> None:
         """Keep a row; a chunk's worth of them goes to the file at once."""
         for pictures in self._pictures:
-            pictures.on_communication_point(t_ns)
+            pictures.observe_rows(np.array([t_ns]), self._values[None, :])
         self._times[self._count] = t_ns
         self._rows[self._count] = self._values
         self._count += 1
         if self._count == len(self._times):
             self._write_rows()
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Keep many rows; each chunk's worth of them goes to the file at once."""
+        for pictures in self._pictures:
+            pictures.observe_rows(t_ns, rows)
+        begin = 0
+        while begin < len(t_ns):
+            end = min(len(t_ns), begin + len(self._times) - self._count)
+            filled = self._count + end - begin
+            self._times[self._count : filled], self._rows[self._count : filled] = t_ns[begin:end], rows[begin:end]
+            self._count, begin = filled, end
+            if filled == len(self._times):
+                self._write_rows()
 
     def say(self, t_ns: int, level: int, name: str, text: str) -> None:
         """Write one line to ``/log``."""
@@ -150,13 +162,14 @@ class McapLog:
 class _Pictures:
     """Frames and scene, as far as the instances have the signals for them."""
 
-    def __init__(
-        self, file: Sink, instances: dict[str, FmuInstance], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
-    ) -> None:
+    def __init__(self, file: Sink, instances: Sequence[FmuInstance], scenario: Scenario) -> None:
         self._file = file
-        self._drawn = drawn
-        self._controller = instances.get("controller")
-        around = vehicle_parameters(scenario, _values_by_name(instances["vehicle"].parameters))
+        self._drawn = _frame_columns(instances)
+        named = {instance.name: instance for instance in instances}
+        self._controller = named.get("controller")
+        outputs = dict(zip(named, places_of(instances)[1::2], strict=True))
+        self._controller_outputs = outputs.get("controller", slice(0, 0))
+        around = vehicle_parameters(scenario, _values_by_name(named["vehicle"].parameters))
         self._car = CarOutline.of(around)
         self._frames = scene.Frames(self._car)
         self._transforms = file.add_channel("/tf", FrameTransforms)
@@ -165,32 +178,40 @@ class _Pictures:
         self._trail = file.add_channel("/trail", PosesInFrame)
         self._poses: list[bytes] = []
         self._trail_count, self._trail_stride = 0, 1
-        self._next_ns = 0
+        self._last_period = -1
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
-        self._path_seen = b""
+        self._path_seen: NDArray[np.int64] | None = None
         slot = slot_box(scenario.slot) if scenario.slot is not None else None
         target = scenario.target.pose if scenario.target is not None else None
         self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.obstacles), target)
         self._changes = self._stage.changes_ns()
 
-    def on_communication_point(self, t_ns: int) -> None:
-        if t_ns < self._next_ns:
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Draw what is due at these exchanges."""
+        periods = t_ns // SCENE_PERIOD_NS
+        due = np.flatnonzero(periods > np.append(self._last_period, periods[:-1]))
+        self._last_period = int(periods[-1])
+        if not len(due):
             return
-        if self._changes and t_ns >= self._changes[0]:
-            self._changes = [change for change in self._changes if change > t_ns]
-            still = scene.still_life(t_ns, self._car, self._stage)
-            self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
-        self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
-        values = [0.0 if found is None else float(found[0].values[found[1]]) for found in self._drawn]
-        x, y, heading, *seen, wheel = values
-        pose = (x, y, heading)
-        message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
-        self._file.write(self._transforms, t_ns, message)
-        if t_ns % TRAIL_STEP_NS < SCENE_PERIOD_NS:
-            self._add_to_trail(scene.trail_pose(pose))
-        if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
-            self._draw_trail(t_ns)
-        self._draw_path(t_ns)
+        times, values = t_ns[due], rows[due]
+        drawn = np.zeros((len(due), len(self._drawn)))
+        known = [place for place, column in enumerate(self._drawn) if column is not None]
+        drawn[:, known] = values[:, [column for column in self._drawn if column is not None]]
+        self._file.write_rows(self._transforms, times, self._frames.rows(times, drawn))
+        for row, time in enumerate(times.tolist()):
+            if self._changes and time >= self._changes[0]:
+                self._draw_stage(time)
+            if time % TRAIL_STEP_NS < SCENE_PERIOD_NS:
+                x, y, heading = drawn[row, :3].tolist()
+                self._add_to_trail(scene.trail_pose((x, y, heading)))
+            if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
+                self._draw_trail(time)
+        self._draw_paths(times, values)
+
+    def _draw_stage(self, t_ns: int) -> None:
+        self._changes = [change for change in self._changes if change > t_ns]
+        still = scene.still_life(t_ns, self._car, self._stage)
+        self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
 
     def on_terminate(self, t_ns: int) -> None:
         if self._poses:
@@ -209,18 +230,23 @@ class _Pictures:
         message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
         self._file.write(self._trail, t_ns, message)
 
-    def _draw_path(self, t_ns: int) -> None:
+    def _draw_paths(self, t_ns: Times, rows: Array) -> None:
+        """Draw the planned path wherever it changes."""
         if self._controller is None:
             return
-        outputs = self._controller.outputs
-        road = outputs.index.get(ON_ROAD)
-        on_road = road is not None and bool(outputs.values[road] > 0.0)
-        seen = outputs.values[self._path_places].tobytes() + bytes([on_road])
-        if seen != self._path_seen:
-            self._path_seen = seen
-            points = sample_path(_values_by_name(outputs), parameters=_values_by_name(self._controller.parameters))
-            update = scene.path_update(t_ns, points)
-            self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
+        outputs = rows[:, self._controller_outputs]
+        ports = self._controller.outputs
+        road = ports.index.get(ON_ROAD)
+        on_road = outputs[:, road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
+        seen = np.column_stack([outputs[:, self._path_places], on_road]).view(np.int64)
+        before = seen[:1] ^ 1 if self._path_seen is None else self._path_seen
+        changed = (seen != np.vstack([before, seen[:-1]])).any(axis=1)
+        self._path_seen = seen[-1:]
+        for row in np.flatnonzero(changed).tolist():
+            named = dict(zip(ports.names, outputs[row].tolist(), strict=True))
+            points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
+            update = scene.path_update(int(t_ns[row]), points)
+            self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
 
 
 def add_channel(file: Sink, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
@@ -229,20 +255,22 @@ def add_channel(file: Sink, topic: str, message: str, variables: list[Variable],
     return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
 
 
-def _frame_ports(vehicle: FmuInstance) -> list[tuple[Ports, int] | None]:
-    """Return where pose, odometry and angle of the front wheels are, which frames are made of; empty without a pose.
+def _frame_columns(instances: Sequence[FmuInstance]) -> list[int | None]:
+    """Return where pose, odometry and angle of the front wheels are among all values; empty without a pose.
 
-    They may be outputs, or told under the vehicle's name. Odometry that there is not is the pose.
+    The frames are made of them. They are outputs of the vehicle, or inputs of its name. Absent odometry is the pose.
     """
-
-    def found(*names: str) -> tuple[Ports, int] | None:
-        ways = ((ports, name) for name in names for ports in (vehicle.outputs, vehicle.inputs))
-        return next(((ports, ports.index[name]) for ports, name in ways if name in ports.index), None)
-
-    poses = [found(f"pose.{axis}") for axis in AXES]
+    parts = places_of(instances)
+    columns: dict[str, int] = {}
+    for number, instance in enumerate(instances):
+        if instance.name == "vehicle":
+            for ports, part in ((instance.inputs, parts[2 * number]), (instance.outputs, parts[2 * number + 1])):
+                columns |= {name: part.start + place for place, name in enumerate(ports.names)}
+    poses = [columns.get(f"pose.{axis}") for axis in AXES]
     if None in poses:
         return []
-    return [*poses, *(found(f"odometry.{axis}", f"pose.{axis}") for axis in AXES), found("front_wheel_angle")]
+    odometry = [columns.get(f"odometry.{axis}", pose) for axis, pose in zip(AXES, poses, strict=True)]
+    return [*poses, *odometry, columns.get("front_wheel_angle")]
 
 
 def _values_by_name(ports: Ports) -> dict[str, float]:

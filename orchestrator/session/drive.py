@@ -4,7 +4,9 @@ from pathlib import Path
 
 from orchestrator.cosim.algorithm import Interrupt, Termination
 from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.signal_blocks import Times
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import ImportedFmus
 from orchestrator.session.provenance import start_record
@@ -52,6 +54,10 @@ class _Clock(Meter):
         if t_ns >= self._next_ns:
             self._next_ns = t_ns + SHOWN_NS
             self.at(t_ns / 1e9)
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Show the time of the last of many exchanges."""
+        self.on_communication_point(int(t_ns[-1]))
 
     def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orchestrator.cosim.algorithm import CoSimulation, Interrupt, Observer, Termination, last_exchange
 from orchestrator.cosim.faults import manipulators
-from orchestrator.cosim.fmu_instance import FmuInstance
+from orchestrator.cosim.fmu_instance import Array, FmuInstance
 from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
 from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.signal_blocks import Times
 from orchestrator.cosim.stop_conditions import standstill
 from orchestrator.log.line import Line
 from orchestrator.scenario.models import MODELS
@@ -68,6 +69,10 @@ class Messages:
     def on_communication_point(self, t_ns: int) -> None:
         """Note the time."""
         self.t_ns = t_ns
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Note the time of the last of many exchanges."""
+        self.t_ns = int(t_ns[-1])
 
     def on_terminate(self, end: Termination) -> None:
         """Nothing to close."""

@@ -12,7 +12,6 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.native.libraries import load_model
 from fmus.native.library_cache import batch_library
 from fmus.native.structures import Long, Pointer, structure
 from fmus.study_slices import StudyCode
@@ -162,10 +161,7 @@ class BatchTables:
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
         links = connections([part_of(name, model) for name, model in models.items()])
         notes = [self._note(item) for item in kept]
-        libraries = [
-            load_model(model) if code is None else load_model(model, code.slices[name], code.options)
-            for name, model in models.items()
-        ]
+        libraries = [_load_library(name, model, code) for name, model in models.items()]
         end = ending or StopCondition("", (), "", 0.0, 0)
         found = [self.signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
         self._batch = BatchC(
@@ -202,6 +198,12 @@ class BatchTables:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
+
+
+def _load_library(name: str, model: Model, code: StudyCode | None) -> Any:
+    from fmus.native.libraries import load_model  # the translator takes a tenth of a second to import
+
+    return load_model(model) if code is None else load_model(model, code.slices[name], code.options)
 
 
 def _plan(faults: Sequence[FaultInputs], number: int) -> Any:

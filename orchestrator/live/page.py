@@ -18,7 +18,7 @@ from orchestrator.drawing import palette
 from orchestrator.live.described import models_data
 from orchestrator.live.situation import numbers_data, situation
 from orchestrator.report import page as report
-from orchestrator.report.charts import charts_data
+from orchestrator.report.charts import charts_of_models
 from orchestrator.report.payload import Arrays
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
@@ -68,7 +68,7 @@ def _models(models: tuple[tuple[str, Model], ...]) -> dict[str, Any]:
     """Return what is the same for all scenarios."""
     pins = yaml.safe_load((ROOM / "pins.yaml").read_text(encoding="utf-8"))
     own = charts_of(model for _, model in models)
-    charts = [{**data, "place": own.index(chart)} for chart, data in charts_data() if chart in own]
+    charts = [{**data, "place": own.index(chart)} for chart, data in charts_of_models([model for _, model in models])]
     return {"models": models_data(dict(models)), "numbers": numbers_data(), "charts": charts, "pins": pins}
 
 

@@ -111,7 +111,7 @@ def drive(make: Any, files: Any, after: Any = None) -> Any:
 
 def break_vehicle(master: Any) -> None:
     """Bring the vehicle 1.5 s ahead of the master's clock."""
-    master.slaves[0].step(0, 1_500_000_000)
+    master.instances[0].step(0, 1_500_000_000)
 
 
 def test_a_refused_step_ends_the_run_with_the_fmus_words(fmus: Any) -> None:

@@ -145,7 +145,7 @@ def test_a_table_goes_row_by_row(table_fmu: Any, tmp_path: Path) -> None:
 def test_two_builds_are_the_same_bytes_and_the_token_is_its_own(
     fmi3_fmus: Any, native_fmus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(native_fmu, "CACHE", tmp_path / "empty")
+    monkeypatch.setattr(native_fmu, "CACHE_FOLDER", tmp_path / "empty")
     again = native_fmu.build(toy_model.MODEL, tmp_path, [host()], fmi=3)
     assert again.read_bytes() == fmi3_fmus["Toy"].read_bytes()
     stamp = again.stat().st_mtime_ns

@@ -95,7 +95,7 @@ def test_checkers_find_nothing(native_fmus: Any, model: Any) -> None:
 def test_two_builds_are_the_same_bytes(native_fmus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from toy_model import MODEL
 
-    monkeypatch.setattr(native_fmu, "CACHE", tmp_path / "empty")
+    monkeypatch.setattr(native_fmu, "CACHE_FOLDER", tmp_path / "empty")
     again = native_fmu.build(MODEL, tmp_path / "elsewhere", [host()])
     assert again.read_bytes() == native_fmus["Toy"].read_bytes()
     stamp = again.stat().st_mtime_ns
@@ -105,7 +105,7 @@ def test_two_builds_are_the_same_bytes(native_fmus: Any, tmp_path: Path, monkeyp
 def test_the_same_content_is_compiled_once(native_fmus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from toy_model import MODEL
 
-    monkeypatch.setattr(native_fmu, "CACHE", tmp_path / "cache")
+    monkeypatch.setattr(native_fmu, "CACHE_FOLDER", tmp_path / "cache")
     first = native_fmu.build(MODEL, tmp_path / "one", [host()])
     monkeypatch.setattr(native_fmu, "binaries", None)
     assert native_fmu.build(MODEL, tmp_path / "other", [host()]).read_bytes() == first.read_bytes()

@@ -198,7 +198,7 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.Monkey
         return Translation(model.name, f"header {len(made)}", "source")
 
     monkeypatch.setattr(sources, "translate", translate)
-    monkeypatch.setattr(sources, "CACHE", tmp_path)
+    monkeypatch.setattr(sources, "CACHE_FOLDER", tmp_path)
     translated = sources.translate_model.__wrapped__
     assert translated(VEHICLE) == translated(VEHICLE) == ("Vehicle", "header 1", "source")
     other = VEHICLE._replace(name="Other")

@@ -30,7 +30,7 @@ from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
-from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.slots.goal import goal_pose, needed_depth, overhang_of
 from controller_fmu.parking.state import ParkingMemory
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -92,6 +92,7 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
     if slot.type == SlotType.PARALLEL:
         along = max(along, room - outline.half_length)
     near = abs(error.x) < along and abs(error.y) < params.final.accepted
+    near = near and overhang_of(slot, outline, pose) < params.slot.stand_out
     return near and abs(wrap_angle(error.heading)) < params.final.accepted_heading
 
 
@@ -120,7 +121,9 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     request = PlanningRequest(pose, goal, outline, params.plan.margin)
     plans = memory.plan.plans + 1
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
-    if plans > params.plan.max_plans:
+    if slot.depth < needed_depth(slot, outline, params.slot):
+        memory = without_path(memory, Reason.SLOT_TOO_SHALLOW, inputs, params)
+    elif plans > params.plan.max_plans:
         memory = without_path(memory, Reason.LEFT_PATH, inputs, params)
     return memory._replace(plan=plan)
 

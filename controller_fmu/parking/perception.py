@@ -4,6 +4,7 @@ import math
 
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import (
@@ -177,10 +178,21 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
     if found.type == SlotType.NONE or not _has_passed(found, params):
         return search
     if found.reason != Reason.NONE:
-        return search._replace(rejected=found.reason)
+        return _without_slot(search, found)
     if is_same_gap(found, search.refused):
         return search
     return search._replace(slot=found)
+
+
+def _without_slot(search: SearchProgress, found: SlotCandidate) -> SearchProgress:
+    """Return the search after a gap was rejected: if it overlaps the slot found before, that is none, either."""
+    slot = search.slot
+    if slot.type != SlotType.NONE:
+        middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
+        at = point_to_frame(middle.x, middle.y, found.row.frame)
+        if found.behind.end < at.x < found.ahead.start:
+            search = search._replace(slot=SlotCandidate())
+    return search._replace(rejected=found.reason)
 
 
 def is_same_gap(found: SlotCandidate, refused: SlotCandidate) -> bool:

@@ -2,8 +2,9 @@
 
 import math
 
+from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, into_heading, row_point
+from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.params import SlotParams
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
@@ -28,29 +29,38 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:
-        length = 2.0 * outline.half_length
-        short = max(0.0, length + params.distance_behind - candidate.depth)
-        deep = candidate.front + outline.half_length - short
+        room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
+        flush = max(candidate.behind.end_front, candidate.ahead.start_front) - candidate.front
+        deep = candidate.front + outline.half_length + min(flush, room)
         heading = into_heading(candidate) + PI
-        middle = _bay_middle(candidate, outline, params)
+        middle = _bay_middle(candidate)
     centre = row_point(candidate.row, middle, deep)
     ahead = outline.centre_ahead
     return Pose(centre.x - ahead * math.cos(heading), centre.y - ahead * math.sin(heading), heading)
 
 
-def _bay_middle(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
-    """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last."""
+def needed_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
+    """Return how deep [m] a slot of this type must be for the vehicle to stand in it, as far out as it may."""
+    if candidate.type == SlotType.PARALLEL:
+        return 2.0 * outline.half_width
+    return 2.0 * outline.half_length + params.distance_behind - params.stand_out
+
+
+def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -> float:
+    """Return how far [m] a vehicle at ``pose`` stands out of the line of the neighbours' fronts, negative inside."""
+    centre = point_from_frame(outline.centre_ahead, 0.0, pose)
+    at = point_to_frame(centre.x, centre.y, candidate.row.frame)
+    turn = pose.heading - candidate.row.frame.heading
+    half = outline.half_length * abs(math.sin(turn)) + outline.half_width * abs(math.cos(turn))
+    return candidate.front + half - candidate.row.side * at.y
+
+
+def _bay_middle(candidate: SlotCandidate) -> float:
+    """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
+
+    n empty bays leave n times their width and once what cars leave of a bay.
+    """
     width = candidate.ahead.start - candidate.behind.end
-    one_more = candidate.bay + 2.0 * outline.half_width + params.room_across
-    if candidate.bay <= 0.0 or width < one_more:
-        return 0.5 * (candidate.behind.end + candidate.ahead.start)
-    return (
-        0.5 * (candidate.ahead.start + candidate.ahead.end) - candidate.bay
-        if _is_car(candidate)
-        else (candidate.ahead.start - 0.5 * candidate.bay)
-    )
-
-
-def _is_car(candidate: SlotCandidate) -> bool:
-    """Return whether the neighbour passed last was seen in full, so that its middle is known."""
-    return candidate.ahead.start_known and candidate.ahead.end_known
+    left = max(candidate.bay - CAR_WIDTH, 0.0)
+    bays = max(1.0, float(math.floor((width - left) / candidate.bay + 0.5))) if candidate.bay > 0.0 else 1.0
+    return candidate.ahead.start - 0.5 * left - 0.5 * (width - left) / bays

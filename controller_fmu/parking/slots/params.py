@@ -13,7 +13,7 @@ class SlotParams(NamedTuple):
 
     room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
     room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
-    stand_out: Annotated[float, Signal("m", "largest overhang out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.5
+    stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15
     distance_behind: Annotated[float, Signal("m", "distance to the end of a perpendicular slot", 0.05, 2.0, HOUSE)] = (
         0.12
     )

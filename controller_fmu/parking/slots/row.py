@@ -29,8 +29,6 @@ MIN_SIDE = 0.3
 """Shorter sides [m] are posts or parts of a corner."""
 ROW_DEPTH = 1.0
 """Sides whose fronts differ by less than this [m] are of one row; a kerb or wall lies deeper."""
-MAX_ROAD = 4.0
-"""A row begins within this [m] of the vehicle's path: the range of the sensors less a metre."""
 MEMBER_GAP = 0.35
 """Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
 ASKEW_VARIANCE = 0.0012
@@ -51,6 +49,9 @@ class RowMember(NamedTuple):
     start_front: float = 0.0
     """Its front at the start, and at the end [m]: cars stand askew."""
     end_front: float = 0.0
+    start_sigma: float = 0.0
+    """Standard deviation of its start, and of its end [m]."""
+    end_sigma: float = 0.0
 
 
 class SlotRow(NamedTuple):
@@ -85,7 +86,7 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
     p = point_to_frame(a.x, a.y, frame)
     q = point_to_frame(b.x, b.y, frame)
     front = side * 0.5 * (p.y + q.y)
-    if front < 0.0 or front > MAX_ROAD:
+    if front < 0.0:
         return RowMember()
     first = p if p.x < q.x else q
     last = q if p.x < q.x else p
@@ -98,6 +99,8 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
         landmark.end_known if forward else landmark.start_known,
         side * first.y,
         side * last.y,
+        math.sqrt(landmark.start_variance if forward else landmark.end_variance),
+        math.sqrt(landmark.end_variance if forward else landmark.start_variance),
     )
 
 
@@ -142,6 +145,8 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
             last.end_known,
             first.start_front,
             last.end_front,
+            first.start_sigma,
+            last.end_sigma,
         )
         return row._replace(members=tuple(joined if number == at else row.members[number] for number in range(MEMBERS)))
     if row.used >= MEMBERS:

@@ -17,7 +17,7 @@ from controller_fmu.parking.map.facing_surface import (
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle
-from controller_fmu.parking.measurement.predicted_range import range_in_map
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, range_in_map
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
     ReadingStatus,
@@ -45,6 +45,8 @@ MAX_MONITORED_RANGE = 1.5
 DISPLACED = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""
+HALF_SPACING = 0.25
+"""Half of the distance of two sensors in a bumper [m]."""
 MAX_REST = 0.3
 """What moves more slowly [m/s] stands: people walk at 0.5 m/s and more."""
 SAME_GAP = 0.5
@@ -138,7 +140,8 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     distance = max(expected.distance, sensors.min_range)
     ux = (expected.x - sensor.x) / distance
     uy = (expected.y - sensor.y) / distance
-    return with_expectation(track, expected.distance, ux, uy, unexplained)
+    is_side = expected.origin == EchoOrigin.INTERIOR
+    return with_expectation(track, expected.distance, ux, uy, is_side, unexplained)
 
 
 def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
@@ -150,7 +153,14 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
     ux = sensor.axis_x if unknown else track.ux
     uy = sensor.axis_y if unknown else track.uy
     return EchoObstacle(
-        sensor.x + distance * ux, sensor.y + distance * uy, closing_speed(track), track.confirmations > 0, unknown
+        sensor.x + distance * ux,
+        sensor.y + distance * uy,
+        closing_speed(track),
+        track.confirmations > 0,
+        unknown,
+        ux,
+        uy,
+        HALF_SPACING if track.is_side and not unknown else 0.0,
     )
 
 

@@ -64,11 +64,7 @@ def outline_frame(pose: Pose) -> OutlineFrame:
 
 def outline_distance(x: float, y: float, pose: Pose, outline: VehicleOutline) -> float:
     """Return the distance [m] from the point (x, y) to the outline of a vehicle at ``pose``; 0 inside."""
-    return distance_in_frame(x, y, outline_frame(pose), outline)
-
-
-def distance_in_frame(x: float, y: float, frame: OutlineFrame, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the point (x, y) to the outline of a vehicle at ``frame``; 0 inside."""
+    frame = outline_frame(pose)
     dx = x - frame.x
     dy = y - frame.y
     along = abs(dx * frame.cos + dy * frame.sin - outline.centre_ahead) - outline.half_length

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import (
     OutlineFrame,
     VehicleOutline,
-    distance_in_frame,
     outline_distance,
     outline_frame,
     pose_along_arc,
@@ -52,6 +51,11 @@ class EchoObstacle(NamedTuple):
     is_present: bool = False
     is_unexplained: bool = False
     """Else it is what the map predicts, but where it is measured."""
+    ux: float = 1.0
+    """Unit vector from the sensor to it."""
+    uy: float = 0.0
+    half_length: float = 0.0
+    """A side goes on across that direction for so far [m]: half way to the next sensor, which hears it beyond."""
 
 
 class VehicleMotion(NamedTuple):
@@ -157,12 +161,14 @@ def free_by_echoes(
     for number in range(SENSORS):
         echo = echoes[number]
         if echo.is_present and echo.is_unexplained == unexplained:
-            least = outline_distance(echo.x, echo.y, motion.pose, outline) - APPROACH
+            a = Point(echo.x - echo.half_length * echo.uy, echo.y + echo.half_length * echo.ux)
+            b = Point(echo.x + echo.half_length * echo.uy, echo.y - echo.half_length * echo.ux)
+            least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
                 way = horizon * step / POSES
                 time = motion.delay + min(MAX_RATE_TIME, 2.0 * way / max(motion.speed, APPROACH))
                 kept = params.echo_distance + echo.closing_speed * time if echo.is_unexplained else params.map_distance
-                distance = distance_in_frame(echo.x, echo.y, sweep.poses[step - 1], outline)
+                distance = line_distance(a, b, sweep.poses[step - 1], outline)
                 if way < free and distance < kept and (distance < least or echo.closing_speed > 0.0):
                     free = horizon * (step - 1) / POSES
     return free

@@ -46,6 +46,8 @@ class ObjectTrack(NamedTuple):
     ux: float = 1.0
     """Unit vector from the sensor to where the predicted echo comes from."""
     uy: float = 0.0
+    is_side: bool = False
+    """That is the inside of a side, not its end."""
 
 
 def update_track(
@@ -87,10 +89,12 @@ def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: floa
     return max(0.0, min(min_range, track.range - own_approach))
 
 
-def with_expectation(track: ObjectTrack, expected: float, ux: float, uy: float, is_unexplained: bool) -> ObjectTrack:
+def with_expectation(
+    track: ObjectTrack, expected: float, ux: float, uy: float, is_side: bool, is_unexplained: bool
+) -> ObjectTrack:
     """Return the track with what was ``expected`` [m] in the direction (ux, uy), and whether that explains it."""
     left = MAX_COASTING if is_unexplained else max(track.unexplained - 1, 0)
-    return track._replace(expected=expected, ux=ux, uy=uy, unexplained=left)
+    return track._replace(expected=expected, ux=ux, uy=uy, is_side=is_side, unexplained=left)
 
 
 def closing_speed(track: ObjectTrack) -> float:

@@ -55,7 +55,7 @@ class ParkingParams(NamedTuple):
         Pose()
     )
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
-    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(manoeuvres=30, duration=300.0)
+    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(duration=300.0)
     mapping: Annotated[MappingParams, Role.TUNABLE] = MappingParams()
     slot: Annotated[SlotParams, Role.TUNABLE] = SlotParams()
     plan: Annotated[PlanningParams, Role.TUNABLE] = PlanningParams()

@@ -96,6 +96,15 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
     return near and abs(wrap_angle(error.heading)) < params.final.accepted_heading
 
 
+def max_cusps(slot: SlotCandidate, manoeuvres: int, params: ParkingParams) -> int:
+    """Return how often a path may change its direction after so many ``manoeuvres``.
+
+    GB/T 41630 allows one manoeuvre less in a perpendicular slot; to set out in reverse is one by itself.
+    """
+    allowed = params.limit.manoeuvres - (1 if slot.type == SlotType.PERPENDICULAR else 0)
+    return max(allowed - manoeuvres - 1, 0)
+
+
 def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with the request for a path from here into the slot as it is known now."""
     pose = inputs.odometry
@@ -118,7 +127,8 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         params.mapping,
     )
     goal = goal_pose(slot, outline, params.slot)
-    request = PlanningRequest(pose, goal, outline, params.plan.margin)
+    cusps = max_cusps(slot, memory.progress.manoeuvres, params)
+    request = PlanningRequest(pose, goal, outline, params.plan.margin, cusps)
     plans = memory.plan.plans + 1
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
     if slot.depth < needed_depth(slot, outline, params.slot):

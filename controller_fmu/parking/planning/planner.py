@@ -36,9 +36,11 @@ from controller_fmu.parking.planning.work import (
     EDGE_COUNT,
     EDGES,
     GOAL_TIGHTER,
+    MAX_CUSPS,
     MEASURED_SEGMENTS,
     MIN_END_CLEARANCE,
     PHASE,
+    REQUESTED,
     SEGMENT_COUNT,
     STAGE,
     STATUS,
@@ -68,7 +70,6 @@ MARGIN_TOO_SMALL = 6
 """Free at start and goal, but with less than the least margin."""
 
 MAX_SEGMENTS = 96
-MAX_CUSPS = 25
 
 
 class PathSegment(NamedTuple):
@@ -122,7 +123,7 @@ def search_status(work: PlanningWork) -> int:
 def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> bool:
     """Return whether the work arrays holds the search for this request."""
     numbers = _numbers(request)
-    for which in range(11):
+    for which in range(REQUESTED):
         if work.requested[which] != numbers[which]:
             return False
     for number in range(VERTICES):
@@ -137,7 +138,7 @@ def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: Planning
 def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> None:
     """Forget all, and remember what is asked."""
     numbers = _numbers(request)
-    for which in range(11):
+    for which in range(REQUESTED):
         set_requested(work, which, numbers[which])
     for number in range(VERTICES):
         vertex = obstacles.vertices[number]
@@ -194,7 +195,7 @@ def _segment(work: PlanningWork, number: int) -> PathSegment:
 
 def _numbers(
     request: PlanningRequest,
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
     start = request.start
     goal = request.goal
     car = request.car
@@ -210,6 +211,7 @@ def _numbers(
         car.half_width,
         car.max_curvature,
         request.margin,
+        float(request.max_cusps),
     )
 
 
@@ -266,7 +268,8 @@ def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
     cost = path_cost(work, problem)
     count = work.counts[SEGMENT_COUNT]
     best = work.counts[BEST_SEGMENT_COUNT]
-    if count > MAX_SEGMENTS or cusps_of(work) > MAX_CUSPS or (best > 0 and work.values[BEST_PATH_COST] <= cost):
+    is_worse = best > 0 and work.values[BEST_PATH_COST] <= cost
+    if count > MAX_SEGMENTS or cusps_of(work) > work.requested[MAX_CUSPS] or is_worse:
         return
     for number in range(count):
         if problem.from_goal:

@@ -19,6 +19,8 @@ class PlanningRequest(NamedTuple):
     car: VehicleOutline = VehicleOutline()
     margin: float = 0.0
     """Clearance [m] wished for; where it cannot be kept, less is tried."""
+    max_cusps: int = 0
+    """Changes of direction of a path that is taken."""
 
 
 class SearchRegion(NamedTuple):

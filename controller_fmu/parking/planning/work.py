@@ -18,7 +18,9 @@ BUCKETS = 2048
 CROWDING_CELLS = 8192
 WORDS = 128
 SEGMENTS = 256
-REQUESTED = 11
+REQUESTED = 12
+MAX_CUSPS = REQUESTED - 1
+"""Place of that number among those of the request."""
 NONE = -1
 
 

@@ -113,8 +113,8 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         speed if speed > params.threshold.standstill else 0.0,
         math.tan(front_wheel_angle) / params.car.wheelbase,
         max(progress.upcoming.left, 0.0),
-        params.drive.brake_delay,
-        params.drive.brake_deceleration,
+        params.monitor.brake_delay,
+        params.monitor.brake_deceleration,
     )
     outline = vehicle_outline(params.car, 1.0)
     verdict = monitor_collision(

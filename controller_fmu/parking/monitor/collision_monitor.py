@@ -101,7 +101,7 @@ def monitor_collision(
 ) -> MonitorVerdict:
     """Return the speed limit for the motion in hand, by the distance that is free for it."""
     stop = stopping_distance(motion.speed, motion.delay, motion.deceleration)
-    horizon = min(stop + LOOK_AHEAD, max(motion.remaining, APPROACH))
+    horizon = min(stop + LOOK_AHEAD, max(motion.remaining, stop + APPROACH))
     free = UNLIMITED
     by_map = UNLIMITED
     if horizon > 0.0:

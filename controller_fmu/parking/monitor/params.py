@@ -12,6 +12,8 @@ class MonitorParams(NamedTuple):
 
     map_distance: Annotated[float, Signal("m", "kept to a mapped obstacle at standstill", 0.0, 1.0, HOUSE)] = 0.04
     echo_distance: Annotated[float, Signal("m", "kept to an unexplained echo at standstill", 0.0, 2.0, HOUSE)] = 0.3
+    brake_delay: Annotated[float, Signal("s", "longest from a brake request to its effect", 0.0, 2.0, HOUSE)] = 0.3
+    brake_deceleration: Annotated[float, Signal("m/s2", "least when braking to standstill", 0.1, 10.0, HOUSE)] = 1.5
     unexplained: Annotated[
         float, Signal("m", "an echo nearer than expected by this is unexplained", 0.01, 2.0, HOUSE)
     ] = 0.2

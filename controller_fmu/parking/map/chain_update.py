@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import (
     CHAIN,
+    ChainEcho,
     EchoChain,
     append_echo,
     begin_chain,
@@ -33,7 +34,7 @@ from controller_fmu.parking.map.landmark import (
     start_point,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.map.segment_fit import EndGuess, SegmentFit, SegmentGuess, fit_segment
+from controller_fmu.parking.map.segment_fit import ROBUST_SIGMA, EndGuess, SegmentFit, SegmentGuess, fit_segment
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
 from modelkit.maths import wrap_angle
 
@@ -51,9 +52,10 @@ HUMP_HALF_WIDTH = 4
 """Echoes on either side of a hump's middle: the ranges over a gap of 0.7 m, at 2 m/s."""
 MIN_PART = HUMP_HALF_WIDTH + 1
 """Echoes of either part of a chain that is split."""
-SPLIT_CHI_SQUARE = 16.0
-"""Two segments must explain the echoes better by this: three unknowns more (11.3 at 1 %), and where they part is
-chosen."""
+SPLIT_CHI_SQUARE = 16.3
+"""Two segments must explain the echoes better by this: three unknowns more, chi square at 0.1 %."""
+SPLIT_UNKNOWNS = 7
+"""Two lines of two unknowns, and three ends."""
 KNOWN_SIGMA = 0.25
 """An edge is known once its standard deviation [m] is below this: half of the widest gap inside a row."""
 POINT_LENGTH = 0.15
@@ -75,6 +77,13 @@ class SideReading(NamedTuple):
     status: int
     range: float
     variance: float
+
+
+class ChainEnd(NamedTuple):
+    """Whether a part of a chain ends at an edge, else how far [m] inside its last echo the side may end."""
+
+    is_edge: bool
+    inset: float
 
 
 class ChainUpdate(NamedTuple):
@@ -158,12 +167,18 @@ def fit_chain(
 ) -> ChainUpdate:
     """Return landmarks and chain after a fit; a chain of two bodies is split, and its first part done."""
     last = chain.used - 1
-    whole = _fit_part(chain, 0, last, reading, chain.begins_at_edge, ends_at_edge)
+    begins = ChainEnd(chain.begins_at_edge, OPEN_INSET)
+    ends = ChainEnd(ends_at_edge, OPEN_INSET)
+    whole = _fit_part(chain, 0, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at >= MIN_PART and at + MIN_PART <= chain.used:
-        first = _fit_part(chain, 0, at - 1, reading, chain.begins_at_edge, False)
-        second = _fit_part(chain, at, last, reading, False, ends_at_edge)
-        if whole.chi_square - first.chi_square - second.chi_square > SPLIT_CHI_SQUARE:
+        parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
+        first = _fit_part(chain, 0, at - 1, reading, begins, parts)
+        second = _fit_part(chain, at, last, reading, parts, ends)
+        if (
+            split_gain(chain, at, (whole.landmark, first.landmark, second.landmark), reading.variance)
+            > SPLIT_CHI_SQUARE
+        ):
             known = _with_edges(first, chain.begins_at_edge, True)
             landmarks = _put(landmarks, chain, known, at, params).landmarks
             rest = from_echo(chain, at)
@@ -175,8 +190,14 @@ def fit_chain(
     return _put(landmarks, chain, known, chain.used, params)
 
 
+def half_gap(echo: ChainEcho, segment: Landmark) -> float:
+    """Return half of a gap [m] by the echo at its middle, off both corners: range2 = distance2 + (gap / 2)2."""
+    distance = predicted(segment, echo.x, echo.y)
+    return math.sqrt(max(echo.range * echo.range - distance * distance, 0.0))
+
+
 def _fit_part(
-    chain: EchoChain, first: int, last: int, reading: SideReading, at_start: bool, at_end: bool
+    chain: EchoChain, first: int, last: int, reading: SideReading, begins: ChainEnd, ends: ChainEnd
 ) -> SegmentFit:
     """Return the fit of a part of a chain whose ends are edges or not."""
     sensor = reading.sensor
@@ -189,10 +210,10 @@ def _fit_part(
     towards = 1.0 if start < end else -1.0
     a_guess = EndGuess(start + towards * cone * a.range, CONE_SIGMA * a.range + chain.spacing)
     b_guess = EndGuess(end - towards * cone * b.range, CONE_SIGMA * b.range + chain.spacing)
-    if not at_start:
-        a_guess = EndGuess(start, OPEN_SIGMA, OPEN_INSET)
-    if not at_end:
-        b_guess = EndGuess(end, OPEN_SIGMA, OPEN_INSET)
+    if not begins.is_edge:
+        a_guess = EndGuess(start, OPEN_SIGMA, begins.inset)
+    if not ends.is_edge:
+        b_guess = EndGuess(end, OPEN_SIGMA, ends.inset)
     if towards < 0.0:
         return fit_segment(chain, first, last, SegmentGuess(line, b_guess, a_guess), reading.variance)
     return fit_segment(chain, first, last, SegmentGuess(line, a_guess, b_guess), reading.variance)
@@ -229,7 +250,7 @@ def initial_line(chain: EchoChain, first: int, last: int, sensor: SensorPose) ->
 
 
 def parting_echo(chain: EchoChain, segment: Landmark) -> int:
-    """Return the echo before which two bodies part: the middle of the largest hump over a fitted segment; 0: none."""
+    """Return the echo before which two bodies part: the top of the largest hump over a fitted segment; 0: none."""
     best = 0.0
     at = 0
     for number in range(CHAIN):
@@ -241,7 +262,42 @@ def parting_echo(chain: EchoChain, segment: Landmark) -> int:
             if total > best:
                 best = total
                 at = number
-    return at
+    return _hump_top(chain, segment, at) if at > 0 else 0
+
+
+def _hump_top(chain: EchoChain, segment: Landmark, middle: int) -> int:
+    """Return the echo of a hump that lies farthest behind the segment: there both corners are equally far."""
+    top = middle
+    most = 0.0
+    for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
+        echo = chain.echoes[middle + near]
+        behind = echo.range - predicted(segment, echo.x, echo.y)
+        if behind > most:
+            most = behind
+            top = middle + near
+    return top
+
+
+def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, Landmark], variance: float) -> float:
+    """Return by how much chi square falls if one segment becomes two, the first before the echo ``at``.
+
+    Where the two do not explain the echoes either, they are noisier than ``variance`` [m2]: it is scaled (F test).
+    """
+    gain = 0.0
+    left = 0.0
+    for number in range(CHAIN):
+        if number < chain.used:
+            before = squared_residual(segments[0], chain.echoes[number], variance)
+            after = squared_residual(segments[1] if number < at else segments[2], chain.echoes[number], variance)
+            gain += before - after
+            left += after
+    return gain / max(1.0, left / max(chain.used - SPLIT_UNKNOWNS, 1))
+
+
+def squared_residual(segment: Landmark, echo: ChainEcho, variance: float) -> float:
+    """Return the squared residual of an echo over its ``variance`` [m2], so limited that no outlier decides."""
+    residual = echo.range - predicted(segment, echo.x, echo.y)
+    return min(residual * residual / variance, ROBUST_SIGMA * ROBUST_SIGMA)
 
 
 def predicted(segment: Landmark, x: float, y: float) -> float:

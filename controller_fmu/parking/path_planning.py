@@ -30,7 +30,7 @@ from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
-from controller_fmu.parking.slots.goal import goal_pose, needed_depth, overhang_of
+from controller_fmu.parking.slots.goal import goal_pose, least_depth, overhang_of
 from controller_fmu.parking.state import ParkingMemory
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -131,7 +131,7 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     request = PlanningRequest(pose, goal, outline, params.plan.margin, cusps)
     plans = memory.plan.plans + 1
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
-    if slot.depth < needed_depth(slot, outline, params.slot):
+    if slot.depth < least_depth(slot, outline, params.slot):
         memory = without_path(memory, Reason.SLOT_TOO_SHALLOW, inputs, params)
     elif plans > params.plan.max_plans:
         memory = without_path(memory, Reason.LEFT_PATH, inputs, params)

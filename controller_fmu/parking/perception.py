@@ -16,7 +16,7 @@ from controller_fmu.parking.map.facing_surface import (
 )
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
-from controller_fmu.parking.measurement.cycle import next_cycle
+from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, range_in_map
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
@@ -225,7 +225,7 @@ def search_reason(search: SearchProgress, params: ParkingParams) -> int:
     """Return why a search ends without a slot, ``NONE`` while it goes on."""
     if search.distance > params.slot.distance and search.slot.type == SlotType.NONE:
         return search.rejected if search.rejected != Reason.NONE else Reason.NO_SLOT
-    return Reason.NOT_MOVING if search.waited * 1e-9 > params.slot.confirm_time else Reason.NONE
+    return Reason.NOT_MOVING if seconds(search.waited) > params.slot.confirm_time else Reason.NONE
 
 
 def is_driving_state(state: int) -> bool:

@@ -16,6 +16,7 @@ from controller_fmu.parking.following.path_tracking import (
 )
 from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.monitor.collision_monitor import (
     MonitorVerdict,
     VehicleMotion,
@@ -80,7 +81,7 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     """Return the memory with the clocks of the fault monitor advanced, and the reason to fail if one ran out."""
     state = memory.state
     if state == ParkingState.CONFIRMING:
-        late = memory.search.waited * 1e-9 > params.slot.confirm_time
+        late = seconds(memory.search.waited) > params.slot.confirm_time
         fault = input_fault(inputs)
         fault = Reason.TIMEOUT if fault == Reason.NONE and late else fault
         return memory._replace(reason=fault) if fault != Reason.NONE else memory
@@ -143,7 +144,7 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     lost = abs(progress.lateral_error) > params.monitor.corridor
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
-    blocked_long = memory.clocks.blocked * 1e-9 > patience
+    blocked_long = seconds(memory.clocks.blocked) > patience
     moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
     planned = memory.plan.is_found
     straightens = memory.state == ParkingState.STRAIGHTENING

@@ -145,7 +145,6 @@ def squared_errors(runs: int) -> tuple[list[float], list[float]]:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="headings of chains have a mean NEES of 1.48, band to 1.25: docs/adr/0011")
 def test_estimates_are_as_good_as_their_covariance_says() -> None:
     """Mean normalised squared error: 1 if the covariance is right; the offset is stated too wide rather than too
     narrow, since the odometry model allows for more drift than these passes have."""

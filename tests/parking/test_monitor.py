@@ -116,8 +116,8 @@ def test_a_track_finds_the_closing_speed() -> None:
         distance -= 1.5 * 0.04
         track = update_track(track, True, distance, 0.0, 1e-4, 0.04)
     assert track.status == TrackStatus.CONFIRMED
-    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, True)) == pytest.approx(1.5, abs=0.2)
-    assert closing_speed(with_expectation(track, 1.3, 1.0, 0.0, False)) == 0.0, "the vehicle approaches a wall"
+    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, False, True)) == pytest.approx(1.5, abs=0.2)
+    assert closing_speed(with_expectation(track, 1.3, 1.0, 0.0, False, False)) == 0.0, "the vehicle approaches a wall"
 
 
 def test_own_motion_is_no_closing_speed() -> None:
@@ -125,7 +125,7 @@ def test_own_motion_is_no_closing_speed() -> None:
     for _ in range(12):
         distance -= 0.8 * 0.04
         track = update_track(track, True, distance, 0.8 * 0.04, 1e-4, 0.04)
-    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, True)) == 0.0
+    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, False, True)) == 0.0
 
 
 def test_what_came_into_the_blind_zone_comes_nearer_as_the_vehicle_does() -> None:

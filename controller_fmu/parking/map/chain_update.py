@@ -1,4 +1,4 @@
-"""From chains of echoes to landmarks: fit, split where two bodies are heard as one, and keep what was known before.
+"""From chains of echoes to landmarks: fit, split where two bodies are detected as one, and keep what was known before.
 
 One convex body leaves ranges that fall, stay and rise. Where they rise and fall again in between, two bodies stand side
 by side; the fit of two segments must then explain the echoes better than that of one (ratio of likelihoods).
@@ -287,14 +287,14 @@ def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, La
     left = 0.0
     for number in range(CHAIN):
         if number < chain.used:
-            before = squared_residual(segments[0], chain.echoes[number], variance)
-            after = squared_residual(segments[1] if number < at else segments[2], chain.echoes[number], variance)
+            before = chi_square_of(segments[0], chain.echoes[number], variance)
+            after = chi_square_of(segments[1] if number < at else segments[2], chain.echoes[number], variance)
             gain += before - after
             left += after
     return gain / max(1.0, left / max(chain.used - SPLIT_UNKNOWNS, 1))
 
 
-def squared_residual(segment: Landmark, echo: ChainEcho, variance: float) -> float:
+def chi_square_of(segment: Landmark, echo: ChainEcho, variance: float) -> float:
     """Return the squared residual of an echo over its ``variance`` [m2], so limited that no outlier decides."""
     residual = echo.range - predicted(segment, echo.x, echo.y)
     return min(residual * residual / variance, ROBUST_SIGMA * ROBUST_SIGMA)
@@ -314,9 +314,12 @@ def _put(
     """Return landmarks and chain with a chain's landmark set: its own renewed, or a new one.
 
     A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
-    unsure direction is none: the chain went round a corner.
+    unsure direction is none: the chain went round a corner. A direction is that of the chain's middle; from there to
+    its end the odometry drifts over half of its path.
     """
-    new = fit.landmark._replace(confirmations=echoes)
+    new = fit.landmark._replace(
+        confirmations=echoes, hh=fit.landmark.hh + 0.5 * chain_path(chain, echoes) * params.heading_variance
+    )
     if new.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(new) > MIN_SURE_LENGTH:
         return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     if length_of(new) < POINT_LENGTH:
@@ -331,6 +334,13 @@ def _put(
         landmarks = replace_landmark(landmarks, other, Landmark())
     index = own if own >= 0 else (other if other >= 0 else free_index(landmarks))
     return ChainUpdate(replace_landmark(landmarks, index, new), chain._replace(landmark=index))
+
+
+def chain_path(chain: EchoChain, echoes: int) -> float:
+    """Return the distance [m] from the first of so many ``echoes`` to the last."""
+    first = chain.echoes[0]
+    last = chain.echoes[max(echoes - 1, 0)]
+    return math.sqrt((last.x - first.x) * (last.x - first.x) + (last.y - first.y) * (last.y - first.y))
 
 
 def same_side(landmarks: tuple[Landmark, ...], new: Landmark, own: int, params: MappingParams) -> int:

@@ -181,14 +181,14 @@ def expected_range(
 
 
 def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
-    """Return the map with those landmarks contradicted that had to be heard before this echo, or at all."""
+    """Return the map with those landmarks contradicted that had to be detected before this echo, or at all."""
     sensor = measurement.sensor
     for number in range(LANDMARKS):
         landmark = local_map.landmarks[number]
         if is_in_reach(landmark, sensor, measurement.range + CONFIRMING_RANGE):
             is_echo = measurement.status == ReadingStatus.ECHO
             after = landmark
-            if landmark.contradictions > 0 and is_echo and _is_heard(landmark, sensor, measurement.range):
+            if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
             if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
                 after = contradict(landmark, predict_range(sensor, landmark), params)
@@ -198,7 +198,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
     return local_map
 
 
-def _is_heard(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:
+def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:
     """Return whether an echo at ``measured`` [m] confirms a landmark."""
     return abs(predict_range(sensor, landmark).distance - measured) < CONFIRMING_RANGE
 

@@ -27,6 +27,8 @@ MAX_SHIFT = 0.5
 """And shifts an end by at most this [m]."""
 SURFACE_DEVIATION = 0.01
 """Standard deviation [m] of a side from a straight line, and of where its sensor is mounted."""
+LEAST_WEIGHT = 1e-9
+"""Of an unknown that no echo tells anything of."""
 MIN_EXTENT = 0.02
 """Shortest segment [m]."""
 
@@ -183,14 +185,14 @@ def _with_turn_prior(normal: NormalEquations, turn: float) -> NormalEquations:
 
 def solve(normal: NormalEquations, rc: float, rq: float, ra: float, rb: float) -> SegmentStep:
     """Return the solution for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
-    aa = max(normal.aa, 1e-9)
-    bb = max(normal.bb, 1e-9)
+    aa = max(normal.aa, LEAST_WEIGHT)
+    bb = max(normal.bb, LEAST_WEIGHT)
     cc = normal.cc - normal.ca * normal.ca / aa - normal.cb * normal.cb / bb
     cq = normal.cq - normal.ca * normal.qa / aa - normal.cb * normal.qb / bb
     qq = normal.qq - normal.qa * normal.qa / aa - normal.qb * normal.qb / bb
     c = rc - normal.ca * ra / aa - normal.cb * rb / bb
     q = rq - normal.qa * ra / aa - normal.qb * rb / bb
-    determinant = max(cc * qq - cq * cq, 1e-9)
+    determinant = max(cc * qq - cq * cq, LEAST_WEIGHT)
     shift = (qq * c - cq * q) / determinant
     turn = (cc * q - cq * c) / determinant
     start = (ra - normal.ca * shift - normal.qa * turn) / aa

@@ -9,6 +9,10 @@ MAX_TRANSPORT_DELAY = 0.01
 """Readings arrive at most this long [s] after their cycle ended: one communication step of the co-simulation."""
 
 
+NANOSECOND = 1e-9
+"""[s]"""
+
+
 class MeasurementCycle(NamedTuple):
     """The last readings [m], since when the next are due [ns] (0: not due), and whether they are new."""
 
@@ -31,6 +35,11 @@ def next_cycle(
     changed = is_due and before.due_ns > 0
     for number in range(SENSORS):
         changed = changed or readings[number] != before.readings[number]
-    if not changed and waited_ns * 1e-9 <= MAX_TRANSPORT_DELAY:
+    if not changed and seconds(waited_ns) <= MAX_TRANSPORT_DELAY:
         return before._replace(due_ns=waited_ns, is_new=False)
     return MeasurementCycle(readings, 0, True)
+
+
+def seconds(time_ns: int) -> float:
+    """Return ``time_ns`` [ns] in seconds."""
+    return time_ns * NANOSECOND

@@ -6,6 +6,7 @@ from controller_fmu.common.monitor import is_unmoved, is_usable_input
 from controller_fmu.common.params import LimitParams
 from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason, SensedWithFault
+from controller_fmu.parking.measurement.cycle import seconds
 from modelkit.vocabulary import Pose
 
 
@@ -82,14 +83,14 @@ def fault_reason(
     fault = input_fault(inputs)
     if fault != Reason.NONE:
         return fault
-    if clocks.frozen * 1e-9 > limit.pose_frozen:
+    if seconds(clocks.frozen) > limit.pose_frozen:
         return Reason.POSE_FROZEN
     if has_failed(clocks.steering, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
-    if clocks.stopping * 1e-9 > limit.stopping:
+    if seconds(clocks.stopping) > limit.stopping:
         return Reason.NOT_STOPPING
-    if clocks.waiting * 1e-9 > limit.driver_response_timeout:
+    if seconds(clocks.waiting) > limit.driver_response_timeout:
         return Reason.NOT_MOVING if drives else Reason.STEERING_FAULT
     if manoeuvres > limit.manoeuvres:
         return Reason.TOO_MANY_SHIFTS
-    return Reason.TIMEOUT if clocks.running * 1e-9 > limit.duration else Reason.NONE
+    return Reason.TIMEOUT if seconds(clocks.running) > limit.duration else Reason.NONE

@@ -22,6 +22,8 @@ from controller_fmu.parking.planning.work import (
 )
 from modelkit.geometry import Point
 
+HALF_DIAGONAL = 0.7072
+"""Of a cell of side 1, rounded up."""
 UNREACHABLE = 1e6
 """Distance [m] from where the target cannot be reached."""
 NOT_QUEUED = -2
@@ -30,7 +32,7 @@ NOT_QUEUED = -2
 def edge_reach(region: SearchRegion, car: VehicleOutline) -> float:
     """Return how far [m] from a cell's centre an edge may lie that the car could see from the cell."""
     radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
-    return 0.7072 * region.edge_cell + radius + MAX_CLEARANCE
+    return HALF_DIAGONAL * region.edge_cell + radius + MAX_CLEARANCE
 
 
 def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: SearchRegion) -> int:
@@ -148,7 +150,7 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
     region = problem.region
     count = region.cost_to_go_count
     clear_cost_to_go(work, count * count)
-    reach = problem.car.half_width + problem.margin - 0.7072 * region.cost_to_go_cell
+    reach = problem.car.half_width + problem.margin - HALF_DIAGONAL * region.cost_to_go_cell
     for edge in range(edges):
         x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)
         for row in range(

@@ -39,7 +39,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
     return Pose(centre.x - ahead * math.cos(heading), centre.y - ahead * math.sin(heading), heading)
 
 
-def needed_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
+def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
     """Return how deep [m] a slot of this type must be for the vehicle to stand in it, as far out as it may."""
     if candidate.type == SlotType.PARALLEL:
         return 2.0 * outline.half_width

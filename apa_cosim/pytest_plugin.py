@@ -37,7 +37,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "StepTestF
     """Collect the step tests."""
     if not (file_path.name.startswith("test_") and file_path.suffix in (".yaml", ".yml")):
         return None
-    from orchestrator.steptest.step_test import declares_step_test
+    from orchestrator.testing.steptest.step_test import declares_step_test
 
     return StepTestFile.from_parent(parent, path=file_path) if declares_step_test(file_path) else None
 
@@ -47,7 +47,7 @@ class StepTestFile(pytest.File):
 
     def collect(self) -> "list[StepTestItem]":
         """Return one test for each expectation; they share one run."""
-        from orchestrator.steptest.step_test import load_step_test
+        from orchestrator.testing.steptest.step_test import load_step_test
 
         test = load_step_test(self.path)
         names = [item.id for item in test.expect] + (["reference"] if test.reference else [])

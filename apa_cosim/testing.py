@@ -14,10 +14,10 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import ImportedFmus
-from orchestrator.steptest.drive import drive
-from orchestrator.steptest.run import run_step_test
-from orchestrator.steptest.step_test import StepTest, load_step_test
-from orchestrator.steptest.verdict import judge_step_test
+from orchestrator.testing.steptest.drive import drive
+from orchestrator.testing.steptest.run import run_step_test
+from orchestrator.testing.steptest.step_test import StepTest, load_step_test
+from orchestrator.testing.steptest.verdict import judge_step_test
 from orchestrator.text.renamed_names import API
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import sentence

@@ -12,10 +12,10 @@ from typing import Any
 from benchmarks.bench_sweep import bound
 from benchmarks.results import SKIPPED, record, size
 from docs.pictures import FLAGS
-from orchestrator.live.page import live_page
-from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.sweep.batch import run_batch
+from orchestrator.studies.live.page import live_page
+from orchestrator.studies.live.situation import page_scenarios
+from orchestrator.studies.sweep.batch import run_batch
 
 RUNS, SECONDS = size((300, 6.0), (5, 0.2))
 MANY = """(count) => {

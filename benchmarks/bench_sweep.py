@@ -22,15 +22,15 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import compile_models, run_batch
-from orchestrator.sweep.disturbed import fault_numbers
-from orchestrator.sweep.engine import cores
-from orchestrator.sweep.job import Chunk, arrays, make_job
-from orchestrator.sweep.rows import FIRST_MEASURE
-from orchestrator.sweep.study.read_study import bind
-from orchestrator.sweep.study.study import Study
-from orchestrator.sweep.study.study_file import StudyFile
-from orchestrator.sweep.sweep import Options, sweep
+from orchestrator.studies.sweep.batch import compile_models, run_batch
+from orchestrator.studies.sweep.disturbed import fault_numbers
+from orchestrator.studies.sweep.engine import cores
+from orchestrator.studies.sweep.job import Chunk, arrays, make_job
+from orchestrator.studies.sweep.rows import FIRST_MEASURE
+from orchestrator.studies.sweep.study.read_study import bind
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.study.study_file import StudyFile
+from orchestrator.studies.sweep.sweep import Options, sweep
 
 REPEATS = size(5, 1)
 MANOEUVRES = size(2000, 20)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.errors import BadInput
 
 PARKED = "parked"

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.paired import PARKED, is_lost, pairs_of
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.table import Table
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")

@@ -5,12 +5,12 @@ from tempfile import TemporaryDirectory
 
 from marked import put
 
-from orchestrator.catalogue.run import judge_standards
-from orchestrator.catalogue.show import count_text, markdown
 from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.session.foreign import ImportedFmus
-from orchestrator.suite.suite import SuiteConfig
+from orchestrator.testing.catalogue.run import judge_standards
+from orchestrator.testing.catalogue.show import count_text, markdown
+from orchestrator.testing.suite.suite import SuiteConfig
 
 
 def tables(words: list[str]) -> list[str]:

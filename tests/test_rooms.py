@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 FLOORS: tuple[tuple[str, ...], ...] = (
     ("modelkit", "fmus", "orchestrator"),
+    *((f"orchestrator.{name}",) for name in ("testing", "studies")),
     ("vehicle_fmu", "controller_fmu"),
     ("fmus.cache_paths", "fmus.files", "fmus.children", "fmus.installation"),
     ("fmus.locks",),
@@ -39,15 +40,20 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.stream",),
     ("orchestrator.session",),
     ("orchestrator.report",),
-    ("orchestrator.steptest",),
-    ("orchestrator.suite", "orchestrator.coverage"),
-    ("orchestrator.catalogue",),
-    ("orchestrator.sweep",),
-    ("orchestrator.identification",),
-    ("orchestrator.falsification",),
-    ("orchestrator.live",),
+    ("orchestrator.testing.steptest",),
+    ("orchestrator.testing.suite", "orchestrator.testing.coverage"),
+    ("orchestrator.testing.catalogue",),
+    ("orchestrator.studies.sweep",),
+    ("orchestrator.studies.identification",),
+    ("orchestrator.studies.falsification",),
+    ("orchestrator.studies.live",),
     ("orchestrator.export",),
-    ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "orchestrator.benchmark"),
+    (
+        "orchestrator.studies.papers",
+        "orchestrator.studies.bakeoff",
+        "orchestrator.studies.parking",
+        "orchestrator.studies.benchmark",
+    ),
     ("orchestrator.commands",),
     ("orchestrator.cli", "apa_cosim"),
     ("apa_cosim.gym",),
@@ -57,7 +63,12 @@ FLOORS: tuple[tuple[str, ...], ...] = (
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
 """These know of nothing but models."""
-INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "apa_cosim.gym")
+INSIDES = (
+    "orchestrator.studies.papers",
+    "orchestrator.studies.bakeoff",
+    "orchestrator.studies.parking",
+    "apa_cosim.gym",
+)
 """Only these look into a model's package; the others take its ``MODEL``."""
 MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 40, 6, 5
 FILES_PER_FOLDER = 20

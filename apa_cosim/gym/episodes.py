@@ -31,9 +31,9 @@ from fmus.study_slices import StudyCode, study_slices
 from orchestrator.cosim.fmu_instance import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import DONE, Scenario
-from orchestrator.sweep.disturbed import fault_receivers
-from orchestrator.sweep.rows import FIRST_MEASURE, measures_for
-from orchestrator.sweep.verdict import OUTCOMES, judge_rows
+from orchestrator.studies.sweep.disturbed import fault_receivers
+from orchestrator.studies.sweep.rows import FIRST_MEASURE, measures_for
+from orchestrator.studies.sweep.verdict import OUTCOMES, judge_rows
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.numbers import CLEARANCE

@@ -11,15 +11,15 @@ import numpy as np
 from apa_cosim.gym.scene_source import SampledScenes, Seeds
 from controller_fmu.policy.params import PolicySystem
 from orchestrator.cosim.fmu_instance import Array
-from orchestrator.grid.cases import KINDS as KIND_NAMES
-from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.factors import FACTORS, NEIGHBOURS, SLOT
-from orchestrator.grid.world.scene import KINDS, parameters
-from orchestrator.grid.world.study import BODY_STEP, limits_beside_neighbours
-from orchestrator.grid.world.study import scenario as world_scenario
 from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.sweep.study.space import Factor
+from orchestrator.studies.parking.cases import KINDS as KIND_NAMES
+from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.world.factors import FACTORS, NEIGHBOURS, SLOT
+from orchestrator.studies.parking.world.scene import KINDS, parameters
+from orchestrator.studies.parking.world.study import BODY_STEP, limits_beside_neighbours
+from orchestrator.studies.parking.world.study import scenario as world_scenario
+from orchestrator.studies.sweep.study.space import Factor
 
 PARALLEL, PERPENDICULAR = 0, 1
 """Choices of the factor ``kind``."""

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from modelkit.variables import variables
 from orchestrator.cosim.fmu_instance import Array
-from orchestrator.grid.world.factors import FACTORS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.disturbed import numbers_for
-from orchestrator.sweep.fields import find_field
-from orchestrator.sweep.job import Chunk, Job, Times, arrays, chunk_scenario, make_job
-from orchestrator.sweep.study.design import Design
-from orchestrator.sweep.study.space import Factor, Space
-from orchestrator.sweep.study.study import Study
+from orchestrator.studies.parking.world.factors import FACTORS
+from orchestrator.studies.sweep.disturbed import numbers_for
+from orchestrator.studies.sweep.fields import find_field
+from orchestrator.studies.sweep.job import Chunk, Job, Times, arrays, chunk_scenario, make_job
+from orchestrator.studies.sweep.study.design import Design
+from orchestrator.studies.sweep.study.space import Factor, Space
+from orchestrator.studies.sweep.study.study import Study
 from orchestrator.verdict.truth import CAR_KEYS, GroundTruth
 
 Seeds = NDArray[np.int64]

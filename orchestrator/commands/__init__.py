@@ -26,15 +26,15 @@ COMMANDS = {
 }
 """Command -> what it does. Its module is imported when it is chosen, so that ``apa --help`` imports none."""
 STUDIES = {
-    "apa-grid": "orchestrator.grid.study",
-    "apa-out": "orchestrator.grid.out_study",
-    "apa-world": "orchestrator.grid.world.study",
-    "parking-world": "orchestrator.grid.parking_world.study",
-    "bakeoff": "orchestrator.bakeoff.study",
-    "guo2015-claim": "orchestrator.bakeoff.claim",
-    "search-kpis": "orchestrator.grid.search_kpis",
-    "valet-rows": "orchestrator.grid.slot_rows",
-    "valet-slots": "orchestrator.grid.found_study",
+    "apa-grid": "orchestrator.studies.parking.study",
+    "apa-out": "orchestrator.studies.parking.out_study",
+    "apa-world": "orchestrator.studies.parking.world.study",
+    "parking-world": "orchestrator.studies.parking.parking_world.study",
+    "bakeoff": "orchestrator.studies.bakeoff.study",
+    "guo2015-claim": "orchestrator.studies.bakeoff.claim",
+    "search-kpis": "orchestrator.studies.parking.search_kpis",
+    "valet-rows": "orchestrator.studies.parking.slot_rows",
+    "valet-slots": "orchestrator.studies.parking.found_study",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which
 says what the study makes of its table and returns an exit code."""

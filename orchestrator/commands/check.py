@@ -8,7 +8,7 @@ from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.terminal import checks_table
-from orchestrator.suite.junit import Suite, cases_of, write_junit
+from orchestrator.testing.suite.junit import Suite, cases_of, write_junit
 from orchestrator.text.console import console, say
 from orchestrator.verdict.judge import judge
 from orchestrator.verdict.logged import read_logged_run

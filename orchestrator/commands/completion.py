@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from orchestrator.commands import STUDIES
 from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.sweep.study.study_file import study_names
+from orchestrator.studies.sweep.study.study_file import study_names
 from orchestrator.text.command_parser import CommandParser
 
 EXAMPLES = """examples:

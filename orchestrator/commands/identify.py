@@ -12,7 +12,7 @@ from orchestrator.text.owned import lock_folder
 from orchestrator.text.quantities import number
 
 if TYPE_CHECKING:
-    from orchestrator.identification.result import Identification
+    from orchestrator.studies.identification.result import Identification
 
 EXAMPLES = """examples:
   apa identify runs/guo2015-case4                             a log of apa
@@ -58,13 +58,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Identify, write, print. Returns 0 if all parameters are identified, else 1."""
-    from orchestrator.identification.car_file import base_car, write_car
-    from orchestrator.identification.identify import identify, usual_parameters
-    from orchestrator.identification.logs import Columns, read_drive
-    from orchestrator.identification.page import write_identification_page
-    from orchestrator.identification.result import as_json
-    from orchestrator.identification.signals import check_signal
     from orchestrator.log.read_log import log_file
+    from orchestrator.studies.identification.car_file import base_car, write_car
+    from orchestrator.studies.identification.identify import identify, usual_parameters
+    from orchestrator.studies.identification.logs import Columns, read_drive
+    from orchestrator.studies.identification.page import write_identification_page
+    from orchestrator.studies.identification.result import as_json
+    from orchestrator.studies.identification.signals import check_signal
 
     log = log_file(str(arguments.log))
     name = log.stem if log.stem != "run" else log.resolve().parent.name
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _print(found: "Identification", out: Path) -> None:
     from rich.table import Table
 
-    from orchestrator.identification.result import interval_text, notes, sentence, value_text
+    from orchestrator.studies.identification.result import interval_text, notes, sentence, value_text
 
     screen = console()
     table = Table(box=None if not screen.is_terminal else Table().box, pad_edge=screen.is_terminal)

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.benchmark.parkbench import read_parkbench
 from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.studies.benchmark.parkbench import read_parkbench
 from orchestrator.text.errors import BadInput
 
 

@@ -13,7 +13,7 @@ from orchestrator.scenario.catalogue import Entry, entries, match_entries, range
 from orchestrator.scenario.files import ROOM, car_names
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.sweep.study.study_file import study_names
+from orchestrator.studies.sweep.study.study_file import study_names
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.limit_text import requirement_text

@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.live.page import NAME, write_live
-from orchestrator.live.situation import page_scenarios, why_not
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.suite.suite import select_scenarios
+from orchestrator.studies.live.page import NAME, write_live
+from orchestrator.studies.live.situation import page_scenarios, why_not
+from orchestrator.testing.suite.suite import select_scenarios
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 

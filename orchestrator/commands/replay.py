@@ -34,8 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the row; returns what ``apa run`` would, or 2 if the results are not the row's."""
     try:
-        from orchestrator.sweep.repeat import folder_of_row, repeat_row
-        from orchestrator.sweep.table import Table
+        from orchestrator.studies.sweep.repeat import folder_of_row, repeat_row
+        from orchestrator.studies.sweep.table import Table
     except ModuleNotFoundError as error:
         raise BadInput(missing_package(error.name or "", "sweep")) from error
     out: Path = arguments.out or folder_of_row(arguments.table, arguments.row)

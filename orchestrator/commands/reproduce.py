@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.kinds import KINDS, default_kind
-from orchestrator.papers.papers import paper, papers
+from orchestrator.studies.papers.papers import paper, papers
 from orchestrator.text.console import say
 from orchestrator.text.errors import NOT_PARKED, PARKED
 from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
-    from orchestrator.papers.result import Drive, Driven
+    from orchestrator.studies.papers.result import Drive, Driven
 
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, compared with the paper
@@ -54,9 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Reproduce, write pictures and result.json, print. Returns 0 if every check holds, else 1."""
-    from orchestrator.papers.figure_files import write_figures
-    from orchestrator.papers.table import print_reproduction
-    from orchestrator.papers.table_files import csv_text, latex_text, summary_lines
+    from orchestrator.studies.papers.figure_files import write_figures
+    from orchestrator.studies.papers.table import print_reproduction
+    from orchestrator.studies.papers.table_files import csv_text, latex_text, summary_lines
 
     names = papers() if arguments.paper == "all" else [arguments.paper]
     if arguments.bibtex:
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print_bibtex(names: list[str]) -> int:
-    from orchestrator.papers.table_files import BIBTEX
+    from orchestrator.studies.papers.table_files import BIBTEX
 
     for name in names:
         paper(name)
@@ -96,7 +96,7 @@ def _print_bibtex(names: list[str]) -> int:
 
 
 def _driver(kind: str) -> "Drive":
-    from orchestrator.papers.drive import drive
+    from orchestrator.studies.papers.drive import drive
 
     files = None if kind == "none" else fmu_files(kind, say)
     done: dict[str, Driven] = {}

@@ -19,8 +19,8 @@ from orchestrator.text.owned import lock_folder
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
-    from orchestrator.sweep.study.study import Study
-    from orchestrator.sweep.sweep import Swept
+    from orchestrator.studies.sweep.study.study import Study
+    from orchestrator.studies.sweep.sweep import Swept
 
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
             raise BadInput(f"{getattr(arguments, name)}: expected 1 or more", key=f"--{name}")
     try:
-        from orchestrator.sweep.sweep import Options, sweep
+        from orchestrator.studies.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
         raise BadInput(missing_package(error.name or "", "native,sweep")) from error
     if arguments.offset < 0:
@@ -116,10 +116,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _explain(study: "Study") -> int:
     """Print what the code of a study omits, and from which number of runs a study has code of its own."""
-    from orchestrator.sweep.batch import explain
-    from orchestrator.sweep.engines import choose_task
-    from orchestrator.sweep.job import Chunk, make_job
-    from orchestrator.sweep.study_code import STUDY_CODE_FROM
+    from orchestrator.studies.sweep.batch import explain
+    from orchestrator.studies.sweep.engines import choose_task
+    from orchestrator.studies.sweep.job import Chunk, make_job
+    from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM
 
     task, job, design = choose_task(study.scenario, None), make_job(study), study.design
     if not task.is_compiled:
@@ -151,7 +151,7 @@ def _tell(swept: "Swept", written: dict[str, Path], arguments: argparse.Namespac
 
 def select_study(name: str, sets: list[str]) -> "Study":
     """Return the study that a word on the command line means, changed by ``KEY=VALUE``. Raises ``BadInput``."""
-    from orchestrator.sweep.study.read_study import read_study
+    from orchestrator.studies.sweep.study.read_study import read_study
 
     pairs = dict(text.split("=", 1) for text in sets if "=" in text)
     if len(pairs) != len(sets):
@@ -176,7 +176,7 @@ def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
 
 def _report(name: str, table: Path, *, quiet: bool) -> int:
     """Let a study say what it makes of its table; return its exit code."""
-    from orchestrator.sweep.table import Table
+    from orchestrator.studies.sweep.table import Table
 
     if name not in STUDIES or quiet:
         return PARKED
@@ -187,14 +187,14 @@ def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
     """Write picture and page, as far as they are asked for; return what there is now."""
     written = {"table": table}
     if arguments.figure is not None:
-        from orchestrator.sweep.page.picture import draw_maps
-        from orchestrator.sweep.table import Table
+        from orchestrator.studies.sweep.page.picture import draw_maps
+        from orchestrator.studies.sweep.table import Table
 
         with verdict_stands(str(arguments.figure)):
             draw_maps(Table(table), arguments.figure)
             written["picture"] = arguments.figure
     if not arguments.no_page:
-        from orchestrator.sweep.page.page import write_page
+        from orchestrator.studies.sweep.page.page import write_page
 
         with verdict_stands("the result page"):
             _replay_worst(table, arguments.replays)
@@ -205,16 +205,16 @@ def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
 def _write_live_page(path: Path) -> str:
     """Write the page that replays runs beside the table; return its name, empty where it cannot be made."""
     from fmus.native.web import can_build
-    from orchestrator.sweep.page.explorer import live_scenario
-    from orchestrator.sweep.store import LIVE_SUFFIX
-    from orchestrator.sweep.table import Table
+    from orchestrator.studies.sweep.page.explorer import live_scenario
+    from orchestrator.studies.sweep.store import LIVE_SUFFIX
+    from orchestrator.studies.sweep.table import Table
 
     page = path.with_name(f"{path.stem}{LIVE_SUFFIX}")
     scenario = live_scenario(Table(path)) if can_build() else None
     if scenario is None:
         page.unlink(missing_ok=True)
         return ""
-    from orchestrator.live.page import write_live
+    from orchestrator.studies.live.page import write_live
 
     with verdict_stands(str(page)):
         write_live(page, [scenario])
@@ -244,8 +244,8 @@ def _outcome_table(path: Path) -> "RichTable":
     from rich.markup import escape
     from rich.table import Table as RichTable
 
-    from orchestrator.sweep.page.statistics import outcome_counts
-    from orchestrator.sweep.table import Table
+    from orchestrator.studies.sweep.page.statistics import outcome_counts
+    from orchestrator.studies.sweep.table import Table
 
     shown = RichTable(box=None, pad_edge=False)
     for name in ("outcome", "reason", "runs", "share", "95 % interval"):
@@ -258,9 +258,9 @@ def _outcome_table(path: Path) -> "RichTable":
 
 def _replay_worst(path: Path, count: int) -> None:
     """Run the worst rows again with log and replay page, so that the result page can link to them."""
-    from orchestrator.sweep.page.statistics import worst
-    from orchestrator.sweep.repeat import folder_of_row, repeat_row
-    from orchestrator.sweep.table import Table
+    from orchestrator.studies.sweep.page.statistics import worst
+    from orchestrator.studies.sweep.repeat import folder_of_row, repeat_row
+    from orchestrator.studies.sweep.table import Table
 
     table = Table(path)
     for number in worst(table, count):

@@ -10,7 +10,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from orchestrator.catalogue.entries import is_catalogue
 from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
@@ -23,9 +22,10 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments
 from orchestrator.session.provenance import start_record
-from orchestrator.suite.collection import write_collection
-from orchestrator.suite.junit import Suite, write_junit
-from orchestrator.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests, select_scenarios
+from orchestrator.testing.catalogue.entries import is_catalogue
+from orchestrator.testing.suite.collection import write_collection
+from orchestrator.testing.suite.junit import Suite, write_junit
+from orchestrator.testing.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests, select_scenarios
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.text.owned import lock_folder
@@ -103,9 +103,9 @@ def jobs(text: str) -> int:
 
 def _test_with_coverage(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
     """Test with the models in process, and say what of their charts and code was covered."""
-    from orchestrator.coverage.coverage import looking_on
-    from orchestrator.coverage.modes import Modes
-    from orchestrator.coverage.show import coverage_tables, write_coverage
+    from orchestrator.testing.coverage.coverage import looking_on
+    from orchestrator.testing.coverage.modes import Modes
+    from orchestrator.testing.coverage.show import coverage_tables, write_coverage
 
     arguments.fmus, arguments.jobs = "none", 1
     modes = Modes()
@@ -134,7 +134,7 @@ def _test_with_coverage(arguments: argparse.Namespace, names: list[str], verdict
 
 def _catalogue(arguments: argparse.Namespace) -> int:
     """Test the catalogue of standards. Returns 0 if no clause is missed."""
-    from orchestrator.catalogue.run import Catalogue
+    from orchestrator.testing.catalogue.run import Catalogue
 
     other = [word for word in arguments.scenarios if not is_catalogue(word)]
     if other:

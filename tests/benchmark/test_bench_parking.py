@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 import yaml
 
-from orchestrator.benchmark import scenes
-from orchestrator.benchmark.driving import DrivenScene
-from orchestrator.benchmark.parkbench import read_parkbench
-from orchestrator.benchmark.planning import plan_scene
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.studies.benchmark import scenes
+from orchestrator.studies.benchmark.driving import DrivenScene
+from orchestrator.studies.benchmark.parkbench import read_parkbench
+from orchestrator.studies.benchmark.planning import plan_scene
 from orchestrator.text.errors import BadInput
 from tests.benchmark.parkbench_scene import scene, write
 

@@ -10,21 +10,21 @@ import pytest
 import yaml
 from shapely.geometry import LineString, Polygon
 
-from orchestrator.benchmark.driving import KINEMATIC, drive_scene
-from orchestrator.benchmark.optimal import reference
-from orchestrator.benchmark.optimal.motion import (
+from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene
+from orchestrator.studies.benchmark.optimal import reference
+from orchestrator.studies.benchmark.optimal.motion import (
     MotionLimits,
     TimedMotion,
     derivatives,
     drive_through,
     integrate_motion,
 )
-from orchestrator.benchmark.optimal.outline_distance import measure_gaps
-from orchestrator.benchmark.optimal.reference import find_optimum
-from orchestrator.benchmark.optimal.search import optimize, violations
-from orchestrator.benchmark.parkbench import read_parkbench
-from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.studies.benchmark.optimal.outline_distance import measure_gaps
+from orchestrator.studies.benchmark.optimal.reference import find_optimum
+from orchestrator.studies.benchmark.optimal.search import optimize, violations
+from orchestrator.studies.benchmark.parkbench import read_parkbench
 from tests.benchmark.parkbench_scene import scene, write
 from tests.report.test_page import data_of
 

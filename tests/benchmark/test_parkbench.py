@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 import yaml
 
-from orchestrator.benchmark.parkbench import DEFAULT_VEHICLE, map_corners, read_parkbench
 from orchestrator.cli import main
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.studies.benchmark.parkbench import DEFAULT_VEHICLE, map_corners, read_parkbench
 from orchestrator.text.errors import BadInput
 from tests.benchmark.parkbench_scene import HIGH, LOW, TARGET, WHEEL_STOP, large_scene, polyline, scene, write
 

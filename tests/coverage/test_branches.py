@@ -12,7 +12,7 @@ import pytest
 
 import controller_fmu
 from orchestrator.cli import main
-from orchestrator.coverage.branches import branch_share, watching
+from orchestrator.testing.coverage.branches import branch_share, watching
 
 TEXT = """
 from typing import NamedTuple

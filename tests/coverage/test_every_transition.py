@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.coverage.covered import ChartCoverage, chart_coverage
-from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.scenario.models import MODELS, apart_models
+from orchestrator.testing.coverage.covered import ChartCoverage, chart_coverage
+from orchestrator.testing.coverage.tracer import name_of, tracing
 
 pytestmark = pytest.mark.release  # measures the tests, not the models
 HERE = Path(__file__).parent

@@ -22,7 +22,7 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout
-from orchestrator.sweep.study.study_file import load_study
+from orchestrator.studies.sweep.study.study_file import load_study
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
 from tests.docs.scripts import script

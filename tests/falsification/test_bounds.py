@@ -8,8 +8,8 @@ import pytest
 from scipy.special import ndtr, ndtri
 from scipy.stats import beta
 
-from orchestrator.falsification.sensitivity import first_orders, total_index
-from orchestrator.falsification.subset_simulation import subset_simulation
+from orchestrator.studies.falsification.sensitivity import first_orders, total_index
+from orchestrator.studies.falsification.subset_simulation import subset_simulation
 from orchestrator.verdict.confidence import clopper_pearson, percent_interval
 
 

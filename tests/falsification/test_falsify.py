@@ -9,15 +9,15 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.falsification.begin import _open
-from orchestrator.falsification.counterexamples import BITS, NOTES, rerun_counterexamples
-from orchestrator.falsification.objective import objective_of
-from orchestrator.falsification.shrink import away
-from orchestrator.falsification.subject import Subject, _read_part
-from orchestrator.falsification.written import space_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.study.read_study import read_study
+from orchestrator.studies.falsification.begin import _open
+from orchestrator.studies.falsification.counterexamples import BITS, NOTES, rerun_counterexamples
+from orchestrator.studies.falsification.objective import objective_of
+from orchestrator.studies.falsification.shrink import away
+from orchestrator.studies.falsification.subject import Subject, _read_part
+from orchestrator.studies.falsification.written import space_of
+from orchestrator.studies.sweep.study.read_study import read_study
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 

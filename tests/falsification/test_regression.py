@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.falsification.counterexamples import rerun_counterexample
+from orchestrator.studies.falsification.counterexamples import rerun_counterexample
 
 CORPUS = Path(__file__).parent / "regression"
 

@@ -8,13 +8,13 @@ from controller_fmu import MODEL as CONTROLLER
 from fmus.contents.variables import fmi_variables, limits
 from modelkit.signal import Group, Role, Signal
 from modelkit.variables import limits_of, variables
-from orchestrator.bakeoff.entries import entries
-from orchestrator.grid.cases import cases, parameters
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
-from orchestrator.sweep.study.sampling import make_design
-from orchestrator.sweep.study.study_file import load_study, study_names
+from orchestrator.studies.bakeoff.entries import entries
+from orchestrator.studies.parking.cases import cases, parameters
+from orchestrator.studies.sweep.study.sampling import make_design
+from orchestrator.studies.sweep.study.study_file import load_study, study_names
 from vehicle_fmu import MODEL as VEHICLE
 
 

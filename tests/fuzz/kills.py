@@ -15,7 +15,7 @@ import numpy as np
 
 from fmus.contents.archive import archive_guid
 from orchestrator.log.read_log import read_log
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.errors import BadInput
 from tests.fuzz.fair_time import FairTime
 

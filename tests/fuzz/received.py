@@ -184,7 +184,7 @@ def forged_table(table: bytes, draw: random.Random) -> bytes:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    from orchestrator.sweep.store import ABOUT, CHECKSUM
+    from orchestrator.studies.sweep.store import ABOUT, CHECKSUM
 
     found = pq.read_table(pa.BufferReader(table))
     metadata = {key: value for key, value in (found.schema.metadata or {}).items() if key != CHECKSUM}

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.cosim.fmu_instance import Array
-from orchestrator.identification.compiled_vehicle import INPUTS, OUTPUTS, CompiledVehicle, InputSequence
-from orchestrator.identification.signals import MeasuredDrive, Series, drive_of
+from orchestrator.studies.identification.compiled_vehicle import INPUTS, OUTPUTS, CompiledVehicle, InputSequence
+from orchestrator.studies.identification.signals import MeasuredDrive, Series, drive_of
 
 STEP = 0.01
 RANGES = {

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.identification.compiled_vehicle import CompiledVehicle
-from orchestrator.identification.logs import Columns, read_drive
-from orchestrator.identification.signals import Series
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
+from orchestrator.studies.identification.logs import Columns, read_drive
+from orchestrator.studies.identification.signals import Series
 from orchestrator.text.errors import BadInput
 from tests.identification.drives import measurements_only, random_drive, simulated_log
 from tests.report.test_page import data_of

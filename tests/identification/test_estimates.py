@@ -5,13 +5,13 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 
-from orchestrator.identification.compiled_vehicle import CompiledVehicle
-from orchestrator.identification.estimate import correlation_time
-from orchestrator.identification.identify import identify
-from orchestrator.identification.parameter import ODOMETRY
-from orchestrator.identification.playback import dead_time_resolution
-from orchestrator.identification.result import Identification, as_json, sentence
-from orchestrator.identification.signals import MeasuredDrive, Series, drive_of
+from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
+from orchestrator.studies.identification.estimate import correlation_time
+from orchestrator.studies.identification.identify import identify
+from orchestrator.studies.identification.parameter import ODOMETRY
+from orchestrator.studies.identification.playback import dead_time_resolution
+from orchestrator.studies.identification.result import Identification, as_json, sentence
+from orchestrator.studies.identification.signals import MeasuredDrive, Series, drive_of
 from orchestrator.text.errors import BadInput
 from tests.identification.drives import STEP, measurements_only, pair, random_drive, simulated_log
 

@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.algorithm import last_exchange
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.disturbed import fault_receivers, numbers_for
+from orchestrator.studies.sweep.disturbed import fault_receivers, numbers_for
 
 STOP_TIME, STANDSTILL = 0.0, 1.0
 

@@ -10,10 +10,10 @@ import yaml
 
 from controller_fmu.registry import Phase
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.live.page import live_page
-from orchestrator.live.situation import page_scenarios
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.studies.live.page import live_page
+from orchestrator.studies.live.situation import page_scenarios
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 from tests.live.person import drive, hurries_once, never_obeys, obeys, standing_clock

@@ -61,7 +61,7 @@ def record(system: str) -> str:
     import yaml
 
     from orchestrator.cosim.fmu_files import fmu_files
-    from orchestrator.papers.drive import drive
+    from orchestrator.studies.papers.drive import drive
     from tests.golden.test_golden import alike, told
 
     kept = yaml.safe_load(Path("tests/golden/scenarios.yaml").read_text(encoding="utf-8"))

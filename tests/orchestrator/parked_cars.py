@@ -9,11 +9,11 @@ from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from controller_fmu.interface import Reason
 from modelkit.car import Car, car_length
 from modelkit.variables import with_values
-from orchestrator.grid.cases import ISO
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.requirements import library_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.studies.parking.cases import ISO
 from orchestrator.verdict.summary import summarize
 
 POSES = ("final heading", "final lateral position", "outline in the slot")

@@ -12,8 +12,8 @@ from orchestrator.cosim.fmu_instance import FmuInstance
 from orchestrator.cosim.model_instance import ModelInstance
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import Messages, make_instances, run_instances
-from orchestrator.steptest.drive import drive
-from orchestrator.steptest.step_test import load_step_test
+from orchestrator.testing.steptest.drive import drive
+from orchestrator.testing.steptest.step_test import load_step_test
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import sample_path, things
 

@@ -11,8 +11,8 @@ from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.files import ROOM, car_names
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.study.sampling import make_design
-from orchestrator.sweep.study.study_file import StudyFile
+from orchestrator.studies.sweep.study.sampling import make_design
+from orchestrator.studies.sweep.study.study_file import StudyFile
 from orchestrator.text.errors import BadInput
 from orchestrator.text.yaml_file import read_mapping
 

@@ -7,19 +7,26 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from orchestrator.catalogue.entries import ROOM, STEP_TESTS, Clause, is_catalogue, read_standard, select_standards
-from orchestrator.catalogue.run import Catalogue, judge_standards
-from orchestrator.catalogue.show import markdown
-from orchestrator.catalogue.verdicts import ClauseRun, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.cli import main
 from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import ImportedFmus
-from orchestrator.suite import suite
-from orchestrator.suite.junit import Case
-from orchestrator.suite.suite import SuiteConfig
+from orchestrator.testing.catalogue.entries import (
+    ROOM,
+    STEP_TESTS,
+    Clause,
+    is_catalogue,
+    read_standard,
+    select_standards,
+)
+from orchestrator.testing.catalogue.run import Catalogue, judge_standards
+from orchestrator.testing.catalogue.show import markdown
+from orchestrator.testing.catalogue.verdicts import ClauseRun, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
+from orchestrator.testing.suite import suite
+from orchestrator.testing.suite.junit import Case
+from orchestrator.testing.suite.suite import SuiteConfig
 from orchestrator.text.errors import BAD_INPUT, BadInput
 from tests.docs.scripts import DOCS, script
 

@@ -12,8 +12,8 @@ from orchestrator.cosim.algorithm import Interrupt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.foreign import ImportedFmus
-from orchestrator.suite.junit import Case, Suite, write_junit
-from orchestrator.suite.suite import SuiteConfig, run_test, select_scenarios
+from orchestrator.testing.suite.junit import Case, Suite, write_junit
+from orchestrator.testing.suite.suite import SuiteConfig, run_test, select_scenarios
 
 RULES = """
 - {id: parked at the end, signal: controller.phase, equals: PARKED, window: {at: end}, source: us}

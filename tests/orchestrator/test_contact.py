@@ -20,9 +20,9 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import REQUIREMENT_SETS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.steptest.run import run_step_test
-from orchestrator.steptest.step_test import load_step_test
-from orchestrator.suite.junit import cases_of
+from orchestrator.testing.steptest.run import run_step_test
+from orchestrator.testing.steptest.step_test import load_step_test
+from orchestrator.testing.suite.junit import cases_of
 from orchestrator.verdict.contact import clearance_parts, contact_facts
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearances

@@ -67,7 +67,7 @@ def test_a_mistake_of_ours_is_3_with_junit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("platformdirs.user_log_path", lambda *_, **__: tmp_path / "log")
-    monkeypatch.setattr("orchestrator.suite.suite.summarize", lambda *_: 1 / 0)
+    monkeypatch.setattr("orchestrator.testing.suite.suite.summarize", lambda *_: 1 / 0)
     assert main(["test", *SHORT, "--out", str(tmp_path / "out")]) == 3
     (case,) = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot().iter("error")
     assert "internal error, no verdict: ZeroDivisionError" in case.get("message", "")
@@ -79,7 +79,7 @@ def test_a_test_that_ends_too_soon_is_no_success(tmp_path: Path, monkeypatch: py
     def leaves(*_: object) -> None:
         raise SystemExit(0)
 
-    monkeypatch.setattr("orchestrator.suite.suite.run_test", leaves)
+    monkeypatch.setattr("orchestrator.testing.suite.suite.run_test", leaves)
     (tmp_path / "index.html").write_text("all passed")
     with pytest.raises(SystemExit):
         main(["test", *SHORT, "--out", str(tmp_path)])
@@ -101,7 +101,7 @@ def study() -> Any:
 
 def parts_of(table: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the parts of a study stay."""
-    monkeypatch.setattr("orchestrator.sweep.store.Store._forget", lambda self: None)
+    monkeypatch.setattr("orchestrator.studies.sweep.store.Store._forget", lambda self: None)
 
 
 def test_parts_of_another_study_are_refused(

@@ -11,7 +11,7 @@ from orchestrator.cli import main
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.study.study_file import load_study
+from orchestrator.studies.sweep.study.study_file import load_study
 from orchestrator.text.errors import BadInput
 from orchestrator.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, current_name, new_name
 from orchestrator.verdict.numbers import NUMBERS

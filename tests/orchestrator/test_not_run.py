@@ -10,10 +10,10 @@ import pytest
 from apa_cosim import sweep as sweep_table
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.grid.world import ends
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep import batch
-from orchestrator.sweep.engine import all_rows, rows_or_reason
+from orchestrator.studies.parking.world import ends
+from orchestrator.studies.sweep import batch
+from orchestrator.studies.sweep.engine import all_rows, rows_or_reason
 from orchestrator.text.errors import NotRunError, RunError
 from orchestrator.text.failures import exit_code_and_message
 
@@ -106,16 +106,18 @@ def test_a_sweep_says_so_and_resume_makes_these_runs(
 
 def in_threads(monkeypatch: Any, run: Any) -> None:
     """Have the chunks of a study made in this process, by another ``run_scenario``."""
-    from orchestrator.sweep import engines
+    from orchestrator.studies.sweep import engines
 
     monkeypatch.setattr(batch, "run_scenario", run)
     choose = engines.choose_task
-    monkeypatch.setattr("orchestrator.sweep.sweep.choose_task", lambda *given: choose(*given)._replace(threads=True))
+    monkeypatch.setattr(
+        "orchestrator.studies.sweep.sweep.choose_task", lambda *given: choose(*given)._replace(threads=True)
+    )
 
 
 def test_the_table_of_a_notebook_raises_it(study: Path, tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(
-        "orchestrator.sweep.batch.compile_models", lambda *given: Failing(None, MemoryError(), {1, 2, 3, 4})
+        "orchestrator.studies.sweep.batch.compile_models", lambda *given: Failing(None, MemoryError(), {1, 2, 3, 4})
     )
     with pytest.raises(NotRunError, match="4 runs could not take place"):
         sweep_table(study, folder=tmp_path / "s")
@@ -123,7 +125,7 @@ def test_the_table_of_a_notebook_raises_it(study: Path, tmp_path: Path, monkeypa
 
 def test_a_hunt_has_no_result(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
     monkeypatch.setattr(
-        "orchestrator.sweep.batch.compile_models", lambda *given: Failing(None, OSError(28, "full"), {1, 2})
+        "orchestrator.studies.sweep.batch.compile_models", lambda *given: Failing(None, OSError(28, "full"), {1, 2})
     )
     assert main(["falsify", "apa-world", "--budget", "50", "--jobs", "1", "--out", str(tmp_path)]) == 2
     said = capsys.readouterr()
@@ -135,7 +137,7 @@ def test_a_hunt_has_no_result(tmp_path: Path, monkeypatch: Any, capsys: Any) -> 
 
 @pytest.mark.parametrize("name", ["guo2015-case4", "catalogue/iso20900"])
 def test_a_test_calls_it_not_run(tmp_path: Path, monkeypatch: Any, capsys: Any, name: str) -> None:
-    monkeypatch.setattr("orchestrator.suite.suite.run_scenario", Failing(None, MemoryError(), set(range(99))))
+    monkeypatch.setattr("orchestrator.testing.suite.suite.run_scenario", Failing(None, MemoryError(), set(range(99))))
     assert main(["test", name, "--fmus", "none", "--out", str(tmp_path)]) == 2
     said = capsys.readouterr().out
     assert "could not take place" in said
@@ -179,7 +181,7 @@ def test_what_was_not_measured_is_no_good_margin() -> None:
 def test_a_part_that_cannot_be_read_for_lack_of_memory_is_kept(study: Path, tmp_path: Path, monkeypatch: Any) -> None:
     """It was called damaged, and removed."""
     words = ["sweep", str(study), "--no-page", "--out", str(tmp_path / "s"), "--chunk", "1"]
-    monkeypatch.setattr("orchestrator.sweep.store.pq.read_table", Failing(None, MemoryError(), {1}))
+    monkeypatch.setattr("orchestrator.studies.sweep.store.pq.read_table", Failing(None, MemoryError(), {1}))
     assert main(words) == 2
     assert len(list((tmp_path / "s" / "parts").glob("*.parquet"))) == 4
     monkeypatch.undo()

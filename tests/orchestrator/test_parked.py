@@ -20,8 +20,8 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.rows import measures_for, row_of
-from orchestrator.sweep.verdict import OUTCOMES, judge_rows
+from orchestrator.studies.sweep.rows import measures_for, row_of
+from orchestrator.studies.sweep.verdict import OUTCOMES, judge_rows
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline, place, slot_box
 from orchestrator.verdict.logged import read_logged_run

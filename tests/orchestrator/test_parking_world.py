@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from orchestrator.grid.parking_world.factors import FACTORS, HITCH
-from orchestrator.grid.parking_world.outcome import DRIVER, FALSE, MOVING, PARKED, STANDING, end_of, is_valid
-from orchestrator.grid.parking_world.scene import BIN, OVERHANG, ROWS, parameters
-from orchestrator.grid.parking_world.study import VALET_SYSTEM, study
-from orchestrator.sweep.study.space import Space
+from orchestrator.studies.parking.parking_world.factors import FACTORS, HITCH
+from orchestrator.studies.parking.parking_world.outcome import DRIVER, FALSE, MOVING, PARKED, STANDING, end_of, is_valid
+from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
+from orchestrator.studies.parking.parking_world.study import VALET_SYSTEM, study
+from orchestrator.studies.sweep.study.space import Space
 
 SPACE = Space(FACTORS, lambda values, seeds: np.zeros((len(seeds), 1)))
 ROW = {"kind": 0, "outcome": "parked", "reason": "all checks passed", "steered": 1.0, "touched.speed": float("nan")}
@@ -61,8 +61,8 @@ def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
     ],
 )
 def test_how_a_run_ends(changed: dict[str, float], valid: bool, end: str) -> None:
-    from orchestrator.grid.parkings import GBT
-    from orchestrator.sweep.columns import WITHIN
+    from orchestrator.studies.parking.parkings import GBT
+    from orchestrator.studies.sweep.columns import WITHIN
 
     within = changed.get("within parallel", True)
     row = {**ROW, "touched.takeover": 0.0, "touched.steering_active": 1.0, **changed, WITHIN.format(GBT[1]): within}

@@ -11,10 +11,10 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.live.layout import layout_data
 from orchestrator.log.read_log import read_log
 from orchestrator.report.found_runs import find_runs
 from orchestrator.session.provenance import git_commit
+from orchestrator.studies.live.layout import layout_data
 from orchestrator.verdict.logged import read_logged_run
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))

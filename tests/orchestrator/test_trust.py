@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.session.trust import VARIABLE, is_trusted, trusting
-from orchestrator.sweep.repeat import NEEDED, write_scenario
+from orchestrator.studies.sweep.repeat import NEEDED, write_scenario
 from orchestrator.text.errors import BadInput
 
 LAW = """
@@ -76,7 +76,7 @@ def test_a_table_asks_before_its_code_is_imported(received: Path, monkeypatch: p
 
     scenario = load_scenario(str(received / "got.yaml"), [])
     monkeypatch.delenv(VARIABLE)
-    monkeypatch.setattr("orchestrator.sweep.repeat.chunk_scenario", lambda *_: scenario)
+    monkeypatch.setattr("orchestrator.studies.sweep.repeat.chunk_scenario", lambda *_: scenario)
     table = type("Fake", (), {"path": received / "else.parquet", "job": None, "about": {"study": {"name": "x"}}})
     table.chunk = lambda number: None  # type: ignore[attr-defined]
     table.names = lambda: NEEDED  # type: ignore[attr-defined]

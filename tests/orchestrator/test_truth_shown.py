@@ -16,7 +16,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Target
 from orchestrator.session.foreign import bind_parameters
 from orchestrator.session.session import SimulationResult, run_scenario
-from orchestrator.suite.collection import picture
+from orchestrator.testing.suite.collection import picture
 from orchestrator.verdict.logged import read_logged_run
 from orchestrator.verdict.summary import summarize
 

@@ -3,8 +3,8 @@
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.papers.drive import drive
-from orchestrator.papers.result import Drive, Driven
+from orchestrator.studies.papers.drive import drive
+from orchestrator.studies.papers.result import Drive, Driven
 
 
 @pytest.fixture(scope="session")

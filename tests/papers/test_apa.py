@@ -2,8 +2,8 @@
 
 import pytest
 
-from orchestrator.papers.apa import CARS, reproduce
-from orchestrator.papers.result import Drive, Reproduction
+from orchestrator.studies.papers.apa import CARS, reproduce
+from orchestrator.studies.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")

@@ -6,14 +6,14 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.grid.cases import CARS, cases, parameters
-from orchestrator.grid.parkings import GridRun, parkings
-from orchestrator.grid.study import study, study_of, totals
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.engines import choose_task
-from orchestrator.sweep.in_memory import columns_in_memory
-from orchestrator.sweep.job import Chunk, chunk_scenario, make_job
-from orchestrator.sweep.rows import row_of
+from orchestrator.studies.parking.cases import CARS, cases, parameters
+from orchestrator.studies.parking.parkings import GridRun, parkings
+from orchestrator.studies.parking.study import study, study_of, totals
+from orchestrator.studies.sweep.engines import choose_task
+from orchestrator.studies.sweep.in_memory import columns_in_memory
+from orchestrator.studies.sweep.job import Chunk, chunk_scenario, make_job
+from orchestrator.studies.sweep.rows import row_of
 
 needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 EVERY = 5

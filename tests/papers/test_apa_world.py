@@ -9,15 +9,15 @@ import pytest
 
 from modelkit.geometry import Box, boxes_gap, corners
 from orchestrator.commands.sweep import select_study
-from orchestrator.grid.parkings import GBT
-from orchestrator.grid.world import ends
-from orchestrator.grid.world.asked import HEARD, feasibility_columns
-from orchestrator.grid.world.factors import FACTORS
-from orchestrator.grid.world.study import fields, space, study
-from orchestrator.sweep.repeat import repeat_row
-from orchestrator.sweep.study.study import Study
-from orchestrator.sweep.sweep import Options, sweep
-from orchestrator.sweep.table import Table
+from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.world import ends
+from orchestrator.studies.parking.world.asked import HEARD, feasibility_columns
+from orchestrator.studies.parking.world.factors import FACTORS
+from orchestrator.studies.parking.world.study import fields, space, study
+from orchestrator.studies.sweep.repeat import repeat_row
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.sweep import Options, sweep
+from orchestrator.studies.sweep.table import Table
 
 
 def columns(made: Study) -> dict[str, np.ndarray]:

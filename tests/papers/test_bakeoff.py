@@ -8,17 +8,17 @@ import pytest
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import MAX_PATH_HEADING, PathStatus, plan, through
 from modelkit.vocabulary import Pose
-from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
-from orchestrator.bakeoff.claim import study as claim
-from orchestrator.bakeoff.drives import Drive, drives
-from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, entries, scenario_of
-from orchestrator.bakeoff.study import report, study_of
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.in_memory import columns_in_memory
-from orchestrator.sweep.study.cases import LabelledScenario
-from orchestrator.sweep.sweep import Options, sweep
-from orchestrator.sweep.table import Table
+from orchestrator.studies.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
+from orchestrator.studies.bakeoff.claim import study as claim
+from orchestrator.studies.bakeoff.drives import Drive, drives
+from orchestrator.studies.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, entries, scenario_of
+from orchestrator.studies.bakeoff.study import report, study_of
+from orchestrator.studies.sweep.in_memory import columns_in_memory
+from orchestrator.studies.sweep.study.cases import LabelledScenario
+from orchestrator.studies.sweep.sweep import Options, sweep
+from orchestrator.studies.sweep.table import Table
 
 compiles = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 EVERY = list(entries())

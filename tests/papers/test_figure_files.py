@@ -9,12 +9,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from orchestrator.cli import main
 from orchestrator.drawing.run_figure import style_context
-from orchestrator.papers.drive import drive
-from orchestrator.papers.figure_files import write_figures
-from orchestrator.papers.paper_figures import FIGURES, PaperFigure
-from orchestrator.papers.papers import papers
-from orchestrator.papers.result import CONCLUSION, Reproduction, Row, not_tested
-from orchestrator.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
+from orchestrator.studies.papers.drive import drive
+from orchestrator.studies.papers.figure_files import write_figures
+from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure
+from orchestrator.studies.papers.papers import papers
+from orchestrator.studies.papers.result import CONCLUSION, Reproduction, Row, not_tested
+from orchestrator.studies.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
 
 ROWS = [
     Row("run_1", "depth", "m", 1.0, 1.5, 0.1, basis=CONCLUSION, differs="50 % & more"),

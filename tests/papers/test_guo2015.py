@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.guo2015.params import GuoParams
-from orchestrator.papers.guo2015 import case_rows, reproduce
-from orchestrator.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
-from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.studies.papers.guo2015 import case_rows, reproduce
+from orchestrator.studies.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
+from orchestrator.studies.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
 from orchestrator.verdict.summary import summarize
 
 SCENARIOS = [

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.hsic.characteristic_states import Characteristic
-from orchestrator.papers.hsic import SCENARIOS, reproduce
-from orchestrator.papers.result import Drive, Reproduction
+from orchestrator.studies.papers.hsic import SCENARIOS, reproduce
+from orchestrator.studies.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")

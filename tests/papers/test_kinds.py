@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrator.cosim.fmu_files import default_kind, fmu_files
-from orchestrator.papers.drive import drive
-from orchestrator.papers.result import Drive
+from orchestrator.studies.papers.drive import drive
+from orchestrator.studies.papers.result import Drive
 
 SHORT = ("zhang2022", "zhang2022-refused")
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrator.papers import preview
-from orchestrator.papers.result import Drive, Reproduction
+from orchestrator.studies.papers import preview
+from orchestrator.studies.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.grid.search_kpis import (
+from orchestrator.studies.parking.search_kpis import (
     BESIDE,
     FALSE,
     FOUND,
@@ -20,7 +20,7 @@ from orchestrator.grid.search_kpis import (
     rows_of,
     study_of,
 )
-from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.studies.sweep.in_memory import columns_in_memory
 
 
 def columns(**more: list[object]) -> dict[str, np.ndarray]:

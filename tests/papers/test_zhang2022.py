@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.papers.result import Drive, Reproduction
-from orchestrator.papers.zhang2022 import reproduce
+from orchestrator.studies.papers.result import Drive, Reproduction
+from orchestrator.studies.papers.zhang2022 import reproduce
 
 
 @pytest.fixture(scope="module")

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from orchestrator.catalogue.entries import select_standards
-from orchestrator.catalogue.show import write_catalogue
-from orchestrator.catalogue.verdicts import ClauseRun, verdicts_of
 from orchestrator.cli import main
-from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.studies.live.page import live_page
+from orchestrator.testing.catalogue.entries import select_standards
+from orchestrator.testing.catalogue.show import write_catalogue
+from orchestrator.testing.catalogue.verdicts import ClauseRun, verdicts_of
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 NARROW = ["scrollable-region-focusable"]

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.drawing.run_figure import run_figure, width_in_cm
-from orchestrator.papers.drive import drive
+from orchestrator.studies.papers.drive import drive
 
 
 @pytest.fixture(scope="module")

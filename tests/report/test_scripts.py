@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from orchestrator.live import page as live
 from orchestrator.report import page as replay
+from orchestrator.studies.live import page as live
 
 TSC = Path(sys.prefix) / "scripts" / "node_modules" / "typescript" / "lib" / "tsc.js"
 """Where `make test` puts the TypeScript compiler."""

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrator.steptest.response import Response, overshoot, rise_time, settling_time, steady_state_error
-from orchestrator.steptest.temporal import TemporalResult, always, eventually, rises, until
+from orchestrator.testing.steptest.response import Response, overshoot, rise_time, settling_time, steady_state_error
+from orchestrator.testing.steptest.temporal import TemporalResult, always, eventually, rises, until
 
 margins = st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=12)
 

@@ -14,9 +14,9 @@ from orchestrator.cli import main
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.steptest.drive import drive
-from orchestrator.steptest.step_test import load_step_test
-from orchestrator.steptest.stimuli import StimulatedInput, stimulus
+from orchestrator.testing.steptest.drive import drive
+from orchestrator.testing.steptest.step_test import load_step_test
+from orchestrator.testing.steptest.stimuli import StimulatedInput, stimulus
 from orchestrator.text.errors import BadInput
 from vehicle_fmu.interface import VehicleInput
 

@@ -3,9 +3,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from orchestrator.sweep.job import Chunk, make_job
-from orchestrator.sweep.study.read_study import bind as bind_file
-from orchestrator.sweep.study.study_file import StudyFile
+from orchestrator.studies.sweep.job import Chunk, make_job
+from orchestrator.studies.sweep.study.read_study import bind as bind_file
+from orchestrator.studies.sweep.study.study_file import StudyFile
 
 RUNS = {
     "grid": {

@@ -16,10 +16,10 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import run_batch, run_recorded
-from orchestrator.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to, truths
-from orchestrator.sweep.rows import row_of, why_not_compiled
-from orchestrator.sweep.verdict import OUTCOMES, judge
+from orchestrator.studies.sweep.batch import run_batch, run_recorded
+from orchestrator.studies.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to, truths
+from orchestrator.studies.sweep.rows import row_of, why_not_compiled
+from orchestrator.studies.sweep.verdict import OUTCOMES, judge
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.measures import Instants, Measure
 from orchestrator.verdict.summary import summarize

@@ -9,16 +9,16 @@ from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import Requirement, Window, library_requirements
 from orchestrator.scenario.scenario import Scenario, Target
-from orchestrator.sweep.columns import WITHIN, columns_of
-from orchestrator.sweep.fields import find_field
-from orchestrator.sweep.in_memory import columns_in_memory
-from orchestrator.sweep.job import chunk_scenario, chunks, make_job
-from orchestrator.sweep.repeat import repeat_row
-from orchestrator.sweep.study.cases import LabelledScenario, design_of, with_samples
-from orchestrator.sweep.study.read_study import read_study
-from orchestrator.sweep.study.study import DerivedParameter, Study
-from orchestrator.sweep.sweep import Options, sweep
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.columns import WITHIN, columns_of
+from orchestrator.studies.sweep.fields import find_field
+from orchestrator.studies.sweep.in_memory import columns_in_memory
+from orchestrator.studies.sweep.job import chunk_scenario, chunks, make_job
+from orchestrator.studies.sweep.repeat import repeat_row
+from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of, with_samples
+from orchestrator.studies.sweep.study.read_study import read_study
+from orchestrator.studies.sweep.study.study import DerivedParameter, Study
+from orchestrator.studies.sweep.sweep import Options, sweep
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.measures import Instants, Measure
 from orchestrator.verdict.numbers import Metric

@@ -79,7 +79,7 @@ def test_nothing_is_lost_when_a_worker_is_killed(cluster: Any, tmp_path: Path) -
 def test_a_scheduler_that_does_not_answer(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.sweep import dask_engine
+    from orchestrator.studies.sweep import dask_engine
 
     monkeypatch.setattr(dask_engine, "CONNECT_TIMEOUT", 0.3)
     code = main(["sweep", "guo2015-trial", "--out", str(tmp_path), "--no-page", "--dask", "tcp://127.0.0.1:9"])
@@ -92,7 +92,7 @@ def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() ->
     pytest.importorskip("cryptography")
     import psutil  # type: ignore[import-untyped]
 
-    from orchestrator.sweep.dask_cluster import PrivateCluster
+    from orchestrator.studies.sweep.dask_cluster import PrivateCluster
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of the connection that is refused

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from orchestrator.sweep.study.read_study import read_study
-from orchestrator.sweep.study.study_file import StudyFile
+from orchestrator.studies.sweep.study.read_study import read_study
+from orchestrator.studies.sweep.study.study_file import StudyFile
 from orchestrator.text.errors import BadInput
 
 SPEED = "vehicle.driver.profile[1].speed"
@@ -94,7 +94,7 @@ def test_scenario_fields_and_faults_can_be_varied(bind: Any) -> None:
         runs={"grid": {"faults[1].start": [2.0], "stop_time": ["12 s"], "decimation.vehicle": [2]}},
     )
     assert fault["kind"] == scenario.faults[0].kind
-    from orchestrator.sweep.job import chunk_scenario
+    from orchestrator.studies.sweep.job import chunk_scenario
 
     one = chunk_scenario(job, chunk, 0)
     assert (one.faults[0].start, one.stop_time, one.decimation) == (2.0, 12.0, {"vehicle": 2})

@@ -11,12 +11,12 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.job import chunk_scenario
-from orchestrator.sweep.page.explorer import explorer_data
-from orchestrator.sweep.page.figures import SCALE, colour, histogram
-from orchestrator.sweep.page.page import study_page
-from orchestrator.sweep.page.picture import draw_maps
-from orchestrator.sweep.page.statistics import (
+from orchestrator.studies.sweep.job import chunk_scenario
+from orchestrator.studies.sweep.page.explorer import explorer_data
+from orchestrator.studies.sweep.page.figures import SCALE, colour, histogram
+from orchestrator.studies.sweep.page.page import study_page
+from orchestrator.studies.sweep.page.picture import draw_maps
+from orchestrator.studies.sweep.page.statistics import (
     axis,
     deciding_limit,
     influences,
@@ -26,7 +26,7 @@ from orchestrator.sweep.page.statistics import (
     varying_columns,
     worst,
 )
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.readable import readable
 from orchestrator.verdict.confidence import wilson
 from orchestrator.verdict.limit_text import requirement_text

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.errors import BadInput
 
 STUDY = """

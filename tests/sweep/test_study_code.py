@@ -8,12 +8,12 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.commands import STUDIES
-from orchestrator.sweep.batch import run_batch
-from orchestrator.sweep.engines import choose_task
-from orchestrator.sweep.job import Chunk, make_job
-from orchestrator.sweep.study.read_study import read_study
-from orchestrator.sweep.study.study_file import study_names
-from orchestrator.sweep.study_code import STUDY_CODE_FROM, StudyRows
+from orchestrator.studies.sweep.batch import run_batch
+from orchestrator.studies.sweep.engines import choose_task
+from orchestrator.studies.sweep.job import Chunk, make_job
+from orchestrator.studies.sweep.study.read_study import read_study
+from orchestrator.studies.sweep.study.study_file import study_names
+from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM, StudyRows
 
 SHIPPED = [*STUDIES, *study_names()]
 RUNS = 12

@@ -8,11 +8,11 @@ import pytest
 
 from apa_cosim import load_scenario, read_table, run
 from orchestrator.cli import main
-from orchestrator.sweep.batch import run_recorded
-from orchestrator.sweep.columns import fill_columns
-from orchestrator.sweep.job import Chunk, make_job
-from orchestrator.sweep.study.read_study import read_study
-from orchestrator.sweep.table import Table
+from orchestrator.studies.sweep.batch import run_recorded
+from orchestrator.studies.sweep.columns import fill_columns
+from orchestrator.studies.sweep.job import Chunk, make_job
+from orchestrator.studies.sweep.study.read_study import read_study
+from orchestrator.studies.sweep.table import Table
 from orchestrator.text.errors import BadInput
 from tests.orchestrator import c_fmus
 

@@ -14,11 +14,11 @@ from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import run_batch
-from orchestrator.sweep.job import chunks, make_job
-from orchestrator.sweep.rows import FIRST_MEASURE
-from orchestrator.sweep.study.cases import LabelledScenario, design_of
-from orchestrator.sweep.study.study import Study
+from orchestrator.studies.sweep.batch import run_batch
+from orchestrator.studies.sweep.job import chunks, make_job
+from orchestrator.studies.sweep.rows import FIRST_MEASURE
+from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.studies.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure, measure_recording
 from orchestrator.verdict.numbers import MEASURES
 from tests.twin.replays import CLibrary, Fmi3, played

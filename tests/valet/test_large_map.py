@@ -19,9 +19,9 @@ from fmus.native.libraries import load_model, memory_size
 from modelkit.store import columns_of, new_store
 from modelkit.variables import flatten, variables, with_values
 from modelkit.vocabulary import Pose
-from orchestrator.benchmark.parkbench import read_parkbench
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.studies.benchmark.parkbench import read_parkbench
 from tests.benchmark.parkbench_scene import large_scene, scene, write
 from tests.planning.plan_model import Scene
 from tests.planning.scenes import CAR, scene_of, take
@@ -99,7 +99,7 @@ def test_a_small_scene_has_the_bits_of_the_valet(tmp_path: Path) -> None:
 @NATIVE
 @pytest.mark.slow
 def test_a_scene_of_many_corners_is_planned(tmp_path: Path) -> None:
-    from orchestrator.benchmark.planning import plan_scene
+    from orchestrator.studies.benchmark.planning import plan_scene
 
     (tmp_path / "a.yaml").write_text(yaml.safe_dump(read_parkbench(write(tmp_path / "a.json", large_scene(0.055)))))
     plan = plan_scene(load_scenario(str(tmp_path / "a.yaml")), passes=1)

@@ -10,12 +10,12 @@ from shapely.geometry import Polygon
 
 from controller_fmu.valet.phases import ValetPhase
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.grid.found_scenarios import out_of
-from orchestrator.grid.found_slots import cases as slots
-from orchestrator.grid.slot_rows import cases, scenario_of, study
 from orchestrator.scenario.obstacle_map import box_corners, map_of
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.studies.parking.found_scenarios import out_of
+from orchestrator.studies.parking.found_slots import cases as slots
+from orchestrator.studies.parking.slot_rows import cases, scenario_of, study
+from orchestrator.studies.sweep.in_memory import columns_in_memory
 from orchestrator.verdict.summary import summarize
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="runs without Python need a C compiler: pip install ziglang")
@@ -47,7 +47,7 @@ def test_the_slot_is_free_and_the_map_has_what_stands_there() -> None:
 
 def test_a_row_of_the_study_is_the_run_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = [cases()[number] for number in (40, 330)]
-    monkeypatch.setattr("orchestrator.grid.slot_rows.cases", lambda lot: chosen)
+    monkeypatch.setattr("orchestrator.studies.parking.slot_rows.cases", lambda lot: chosen)
     columns = columns_in_memory(study())
     files = fmu_files("native", lambda text: None)
     for place, case in enumerate(chosen):

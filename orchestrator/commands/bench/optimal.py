@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
-from orchestrator.benchmark.driving import KINEMATIC, drive_scene
-from orchestrator.benchmark.optimal.reference import Optimum, find_optimum
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.report.replay import write_replay
+from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene
+from orchestrator.studies.benchmark.optimal.reference import Optimum, find_optimum
 from orchestrator.text.console import console, say, working
 from orchestrator.text.errors import NOT_PARKED, PARKED
 from orchestrator.text.owned import lock_folder

@@ -13,8 +13,8 @@ from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, 
 from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
-    from orchestrator.falsification.falsify import FalsificationResult
-    from orchestrator.falsification.subject import Subject
+    from orchestrator.studies.falsification.falsify import FalsificationResult
+    from orchestrator.studies.falsification.subject import Subject
 
 EXAMPLES = """examples:
   apa falsify apa-world                              search for contact of the parking assist
@@ -71,10 +71,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _hunt(arguments: argparse.Namespace) -> int:
-    from orchestrator.falsification.begin import begin
-    from orchestrator.falsification.falsify import falsify
-    from orchestrator.falsification.page import as_json, write_page
-    from orchestrator.falsification.subject import Stopped
+    from orchestrator.studies.falsification.begin import begin
+    from orchestrator.studies.falsification.falsify import falsify
+    from orchestrator.studies.falsification.page import as_json, write_page
+    from orchestrator.studies.falsification.subject import Stopped
 
     study = select_study(arguments.study, arguments.set)
     out: Path = arguments.out or Path("runs") / f"falsify-{study.name}"
@@ -101,7 +101,7 @@ def _hunt(arguments: argparse.Namespace) -> int:
 
 
 def _print(subject: "Subject", result: "FalsificationResult", page: Path) -> None:
-    from orchestrator.falsification.page import bound_text, counterexamples_text
+    from orchestrator.studies.falsification.page import bound_text, counterexamples_text
 
     screen = console()
     screen.print(f"{result.runs} runs, {result.broken} break: {subject.objective.text}", markup=False)
@@ -111,7 +111,7 @@ def _print(subject: "Subject", result: "FalsificationResult", page: Path) -> Non
 
 
 def _corpus(folder: Path, *, as_json: bool) -> int:
-    from orchestrator.falsification.counterexamples import rerun_counterexamples
+    from orchestrator.studies.falsification.counterexamples import rerun_counterexamples
 
     again = rerun_counterexamples(folder)
     if as_json:

@@ -94,8 +94,8 @@ def _write_live(path: Path, scenario: Scenario, foreign: ImportedFmus) -> None:
     from fmus.native.web import can_build
 
     if can_build() and not foreign.files:
-        from orchestrator.live.page import write_live
-        from orchestrator.live.situation import why_not
+        from orchestrator.studies.live.page import write_live
+        from orchestrator.studies.live.situation import why_not
 
         if not why_not(scenario):
             write_live(path, [scenario])

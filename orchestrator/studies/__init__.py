@@ -1,0 +1,1 @@
+"""Studies of many runs: sweep, falsification, identification, benchmark, parking studies, papers, live page."""

@@ -1,0 +1,80 @@
+"""A falsification prepared: who does the runs, where they are kept, whether it goes on."""
+
+import argparse
+import json
+import shutil
+from functools import partial
+from pathlib import Path
+
+from fmus.files import write_whole
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, parameters_of
+from orchestrator.session.session import run_scenario
+from orchestrator.studies.falsification.objective import objective_of
+from orchestrator.studies.falsification.subject import Subject
+from orchestrator.studies.falsification.written import space_of
+from orchestrator.studies.sweep.batch import compile_models, rows_by
+from orchestrator.studies.sweep.engine import ChunkTask
+from orchestrator.studies.sweep.engines import RECORDED_CHUNK, choose_task, make_engine
+from orchestrator.studies.sweep.job import Chunk, Job, chunk_scenario
+from orchestrator.studies.sweep.rows import row_of
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.text.errors import BadInput
+
+
+def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
+    """Return the falsification. Raises ``BadInput``, also for runs of another falsification that are in the way."""
+    if study.scenario.system is not None:
+        text = "a falsification runs our models, or with --controller one FMU in the place of ours; leave out"
+        raise BadInput(text, file=study.scenario.file, key="system")
+    if arguments.controller is not None:
+        study = study._replace(goals=())
+    objective, space = objective_of(study, arguments.requirement), space_of(study)
+    journal = out / "journal"
+    about = {
+        "study": {**study.content},
+        "objective": objective.name,
+        "budget": arguments.budget,
+        "seed": arguments.seed,
+        "sources": sources_hash(),
+        "controller": None if arguments.controller is None else str(arguments.controller.resolve()),
+    }
+    _open(journal, json.dumps(about, sort_keys=True, default=str), resume=arguments.resume)
+    task = _task(study, arguments)
+    subject = Subject(study, space, objective, make_engine(task, None, arguments.jobs), journal)
+    if task.is_compiled:
+        compile_models(tuple(subject.job.measures), study.scenario)
+    return subject
+
+
+def _open(journal: Path, about: str, *, resume: bool) -> None:
+    """Make a journal, or go on with one of the same hunt; one that has not begun begins."""
+    file = journal / "about.json"
+    if resume and file.is_file():
+        if file.read_bytes() != about.encode():
+            raise BadInput("the runs there are of another hunt, or of other models", file=journal, key="--resume")
+        return
+    shutil.rmtree(journal, ignore_errors=True)
+    journal.mkdir(parents=True)
+    write_whole(file, about)
+
+
+def _task(study: Study, arguments: argparse.Namespace) -> ChunkTask:
+    if arguments.controller is None:
+        return choose_task(study.scenario, arguments.fmus)
+    files = {"controller": str(fmu_of(str(arguments.controller)))}
+    return ChunkTask(partial(run_foreign, files=files), "their controller", RECORDED_CHUNK, False)
+
+
+def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
+    """Return one row of measures per run of ``chunk`` with FMUs of somebody else's; what they do not tell is NaN."""
+    foreign = ImportedFmus({name: Path(path) for name, path in files.items()})
+    own = {instance: parameters_of(path, instance) for instance, path in foreign.files.items()}
+
+    def row(number: int) -> Array:
+        scenario, _ = bind_parameters(chunk_scenario(job, chunk, number), own)
+        ran = run_scenario(scenario, None, foreign=foreign)
+        return row_of(ran.recording, scenario, job.measures)
+
+    return rows_by(row, len(chunk.seeds))

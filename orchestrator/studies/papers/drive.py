@@ -1,0 +1,16 @@
+"""Drives one scenario and sums it up: what every reproduction stands on."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.studies.papers.result import Driven
+from orchestrator.verdict.summary import summarize
+
+
+def drive(name: str, files: Mapping[str, Path] | None = None, kind: str = "none") -> Driven:
+    """Return the scenario ``name`` driven with the FMUs in ``files``, or in process."""
+    scenario = load_scenario(name)
+    ran = run_scenario(scenario, files, kind=kind)
+    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))

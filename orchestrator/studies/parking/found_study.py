@@ -1,0 +1,118 @@
+"""Slots that the valet has to find, as a study, and what it prints."""
+
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table as Printed
+
+from orchestrator.scenario.obstacle_map import map_of
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.studies.parking.found_scenarios import out_of, scenario_of
+from orchestrator.studies.parking.found_slots import DetectedSlotCase, cases
+from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.table import Table
+from orchestrator.text.console import console
+from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.outcome import BEYOND
+
+MEASURES = {
+    "plans": Measure("last", "controller.valet.plans"),
+    "margin": Measure("last", "controller.valet.margin"),
+    "layout": Measure("last", "controller.valet.slot.layout"),
+    "into": Measure("last", "controller.valet.slot.heading"),
+    "width": Measure("last", "controller.valet.slot.width"),
+    "depth": Measure("last", "controller.valet.slot.depth"),
+    "ax": Measure("last", "controller.valet.slot.ax"),
+    "ay": Measure("last", "controller.valet.slot.ay"),
+    "target_x": Measure("last", "controller.valet.target.x"),
+    "target_y": Measure("last", "controller.valet.target.y"),
+}
+
+FACTORS = ("angle", "neighbours", "end", "street", "wish")
+WAY = "way"
+"""A run of this is there to see whether there is a way."""
+PLANNING_TIME = 10.0
+
+
+def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False, ways: bool = False) -> Study:
+    """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked.
+
+    ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
+    short one in which the valet receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
+    """
+    scenarios = []
+    for case in cases(runs, lot):
+        scenario = out_of(case) if out else scenario_of(case, told)
+        scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if told or out else scenario))
+        if ways:
+            scenarios.append(LabelledScenario(_labels(case, WAY), _planning_scenario(case)))
+    scenario, design = design_of(scenarios)
+    content = {
+        "name": "valet-slots",
+        "title": "Slot detection of the valet: kinds, angles, neighbours, walls, roads, sides, search paths",
+        "description": "Parked: heading and lateral position within GB/T 41630, no contact. No external slot.",
+        "map": {"x": "angle", "y": "neighbours", "split": "end"},
+    }
+    return Study(scenario, design, content, measures=MEASURES)
+
+
+def _planning_scenario(case: DetectedSlotCase) -> Scenario:
+    """Return the short scenario in which the valet plans with the map and the target told."""
+    told = _with_map(scenario_of(case, told=True))
+    return told.model_copy(update={"stop_time": PLANNING_TIME, "controller": told.controller | {"plan.at_once": 100}})
+
+
+def _with_map(scenario: Scenario) -> Scenario:
+    """Return the scenario with its map told to the valet."""
+    return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
+
+
+def _labels(case: DetectedSlotCase, of: str) -> dict[str, str | float]:
+    own = {name: str(value) if isinstance(value, bool) else value for name, value in case._asdict().items()}
+    return {**own, "of": of}
+
+
+def report(table: Table, folder: Path) -> int:
+    """Print how many parked by each factor, and why others did not. Returns 1 if a run touched something.
+
+    With ``ways`` shares are of the slots for which there is a way.
+    """
+    names = (*FACTORS, "number", "of", "outcome", "reason", "min_clearance", "margin")
+    every = [dict(zip(names, row, strict=True)) for row in zip(*(table.column(name) for name in names), strict=True)]
+    rows = [row for row in every if row["of"] != WAY]
+    planned = {row["number"] for row in every if row["of"] == WAY and row["margin"] > 0.0}
+    for row in rows:
+        row["way"] = row["number"] in planned or len(every) == len(rows)
+    for factor in FACTORS:
+        console().print(_by(rows, factor))
+    for reason in sorted({str(row["reason"]) for row in rows if row["outcome"] != "parked"}):
+        count = sum(row["reason"] == reason and row["outcome"] != "parked" for row in rows)
+        console().print(f"{count} not parked: {reason}")
+    touched = sum(row["min_clearance"] <= 0.0 for row in rows)
+    parked = sum(row["outcome"] == "parked" for row in rows)
+    if len(every) > len(rows):
+        console().print(f"{len(planned)} with a way for a planner that knows everything")
+    console().print(f"{len(rows)} runs, {parked} parked, {touched} touched; {_gbt(rows)} of those that stand in a slot")
+    return 1 if touched else 0
+
+
+def _by(rows: list[dict[str, Any]], factor: str) -> Printed:
+    table = Printed(box=None, pad_edge=False)
+    for name in (factor, "runs", "with a way", "parked", "GB/T 41630", "touched"):
+        table.add_column(name, justify="right")
+    for value in sorted({row[factor] for row in rows}):
+        own = [row for row in rows if row[factor] == value]
+        ways = [row for row in own if row["way"]]
+        parked = sum(row["outcome"] == "parked" for row in ways)
+        share = f"{100.0 * parked / len(ways):.1f} %" if ways else ""
+        touched = sum(row["min_clearance"] <= 0.0 for row in own)
+        table.add_row(f"{value}", f"{len(own)}", f"{len(ways)}", share, _gbt(own), f"{touched}")
+    return table
+
+
+def _gbt(rows: list[dict[str, Any]]) -> str:
+    """Return how many of those that the valet says are parked stand as GB/T 41630 asks."""
+    stand = [row for row in rows if row["outcome"] == "parked" or str(row["reason"]).startswith(BEYOND)]
+    good = sum(row["outcome"] == "parked" for row in stand)
+    return f"{100.0 * good / len(stand):.1f} %" if stand else ""

@@ -1,0 +1,179 @@
+"""Slots that the assist comes out of, drawn by lot: kinds, sides, room, kerbs and walls, streets, neighbours, cars.
+
+All of a run follows from its number and the lot. The row lies along x at y < 0, its line at y = 0, the road at y > 0;
+the car stands along the row, or across it with its nose to the road, and comes out to the left. To the right is the
+mirror image.
+"""
+
+import math
+import random
+from typing import Any, NamedTuple
+
+from controller_fmu.apa.choice import ChosenSide
+from controller_fmu.apa.slot import Kind
+from modelkit.car import car_length
+from orchestrator.scenario.car import car_parameters
+from orchestrator.studies.parking.cases import BODY, CARS, KINDS
+from orchestrator.studies.parking.imperfect import imperfect
+
+SEED_STRIDE = 100_000
+LENGTH, WIDTH = 4.4, 1.8
+"""Of the neighbours [m]."""
+ROOM: dict[int, tuple[float, float]] = {Kind.PARALLEL: (0.5, 2.0), Kind.PERPENDICULAR: (0.6, 1.6)}
+"""By how much the slot is longer, or wider, than the car [m]."""
+MIN_NEIGHBOUR_GAP = 0.2
+"""The car stands no nearer to a neighbour [m]."""
+BEHIND = ("nothing", "kerb", "wall")
+"""What a parallel slot ends at; across the road a wall or nothing behind the tail."""
+BESIDE = {"kerb": (0.1, 0.35), "wall": (0.15, 0.5)}
+AT_TAIL = (0.2, 0.8)
+STREETS = (5.5, 6.5, 8.0, 0.0)
+"""From the row's line to a wall across the road [m]; 0: none."""
+STAGGER = (-0.2, 0.3)
+"""Neighbours stand further out than the car by this [m]."""
+ASKEW = math.radians(2.0)
+WALL_THICKNESS = 1.0
+PASSES = ("nobody", "stands", "walks off")
+PERSON_WIDTH = 0.5
+
+
+class PullOutCase(NamedTuple):
+    """One run."""
+
+    number: int
+    lot: int
+    kind: int
+    side: int
+    """Out to the left 1, to the right -1."""
+    car: str
+    body: str
+    extra: float
+    """Room [m] between the neighbours beyond the car's length, or width."""
+    share: float
+    """Of the room behind the car, or on its right."""
+    askew: float
+    """Of the car against the row [rad]."""
+    behind: str
+    beside: float
+    """From the car to what the slot ends at [m]."""
+    street: float
+    out_a: float
+    """How far the neighbour behind, or on the right, stands out further than the car [m]."""
+    out_b: float
+    passes: str
+    """What a person does who is on the road beside the slot."""
+
+
+def cases(runs: int, lot: int = 0, people: bool = False) -> list[PullOutCase]:
+    """Return so many cases; ``people``: with a person on the road beside each slot."""
+    return [case_of(number, lot, people) for number in range(runs)]
+
+
+def case_of(number: int, lot: int, people: bool) -> PullOutCase:
+    """Return one case."""
+    draw = random.Random(number + SEED_STRIDE * lot)
+    kind = draw.choice(list(ROOM))
+    extra = draw.uniform(*ROOM[kind])
+    least = MIN_NEIGHBOUR_GAP / extra
+    behind = draw.choice(BEHIND)
+    beside = draw.uniform(*BESIDE.get(behind, (0.0, 0.0))) if kind == Kind.PARALLEL else draw.uniform(*AT_TAIL)
+    return PullOutCase(
+        number=number,
+        lot=lot,
+        kind=kind,
+        side=draw.choice((1, -1)),
+        car=draw.choice(list(CARS)),
+        body=draw.choice(("kinematic", "double_track")),
+        extra=extra,
+        share=draw.uniform(least, 1.0 - least),
+        askew=draw.uniform(-ASKEW, ASKEW),
+        behind=behind if kind == Kind.PARALLEL or behind == "wall" else "nothing",
+        beside=beside,
+        street=draw.choice(STREETS),
+        out_a=draw.uniform(*STAGGER),
+        out_b=draw.uniform(*STAGGER),
+        passes=draw.choice(PASSES[1:]) if people else PASSES[0],
+    )
+
+
+class Footprint(NamedTuple):
+    """A rectangle, and where it stands."""
+
+    x0: float
+    x1: float
+    y0: float
+    y1: float
+
+
+def start_of(case: PullOutCase) -> tuple[float, float, float]:
+    """Return where the rear axle of a car stands that comes out to the left: x, y, heading; its outer end at y = 0."""
+    car = CARS[case.car]
+    if case.kind == Kind.PARALLEL:
+        return case.share * case.extra + car.rear_overhang, -0.5 * car.width, case.askew
+    x = case.share * case.extra + 0.5 * car.width
+    return x, -car.wheelbase - car.front_overhang, 0.5 * math.pi + case.askew
+
+
+def things_of(case: PullOutCase) -> dict[str, Footprint]:
+    """Return what stands there on the left: neighbours, what the slot ends at, the other side of the street."""
+    car = CARS[case.car]
+    across = case.kind == Kind.PERPENDICULAR
+    along, deep = (WIDTH, LENGTH) if across else (LENGTH, WIDTH)
+    size, depth = (car.width, car_length(car)) if across else (car_length(car), car.width)
+    end = -depth - case.beside
+    found = {
+        "first": Footprint(-along, 0.0, case.out_a - deep, case.out_a),
+        "second": Footprint(size + case.extra, size + case.extra + along, case.out_b - deep, case.out_b),
+    }
+    if case.behind == "wall":
+        found["wall"] = Footprint(-12.0, size + case.extra + 12.0, end - WALL_THICKNESS, end)
+    if case.street > 0.0:
+        found["across"] = Footprint(-40.0, 50.0, case.street, case.street + WALL_THICKNESS)
+    if case.behind == "kerb":
+        found["kerb"] = Footprint(-15.0, 25.0, end, end)
+    return found
+
+
+def vehicle_of(case: PullOutCase) -> dict[str, Any]:
+    """Return the parameters of the vehicle."""
+    things = things_of(case)
+    scene: dict[str, Any] = {}
+    for number, name in enumerate(("first", "second", "wall", "across"), start=1):
+        thing = things.get(name, Footprint(0.0, 0.0, 0.0, 0.0))
+        box = {"x": 0.5 * (thing.x0 + thing.x1), "y": 0.5 * case.side * (thing.y0 + thing.y1)}
+        box |= {"length": thing.x1 - thing.x0, "width": thing.y1 - thing.y0}
+        scene |= {f"scene.boxes[{number}].{key}": value for key, value in box.items()}
+    if "kerb" in things:
+        kerb = things["kerb"]
+        line = {"x1": kerb.x0, "y1": case.side * kerb.y0, "x2": kerb.x1, "y2": case.side * kerb.y1, "height": 0.12}
+        scene |= {f"scene.kerbs[1].{key}": value for key, value in line.items()}
+    scene |= {f"scene.boxes[5].{key}": value for key, value in _passer(case).items()}
+    x, y, heading = start_of(case)
+    place = {"start.x": x, "start.y": case.side * y, "start.heading": case.side * heading}
+    seed = case.number + 1 + SEED_STRIDE * case.lot
+    errors = imperfect(seed, random.Random(seed + 29)) | {"body": BODY[case.body]}
+    return {**car_parameters(CARS[case.car]), **scene, **place, "driver.apa_switch_time": 0.5, **errors}
+
+
+def _passer(case: PullOutCase) -> dict[str, float]:
+    """Return a person on the road beside the slot, who stands there for a while, or walks off across the road then."""
+    draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
+    if case.passes == PASSES[0]:
+        return {"length": 0.0}
+    far = case.extra + (car_length(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
+    place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
+    person, leaves = {**place, "length": PERSON_WIDTH, "width": PERSON_WIDTH}, draw.uniform(3.0, 20.0)
+    if case.passes == PASSES[1]:
+        return {**person, "disappear_at": leaves}
+    speed = draw.uniform(0.8, 1.5)
+    return {**person, "speed_y": case.side * speed, "moves_at": leaves, "disappear_at": leaves + 6.0 / speed}
+
+
+def side_of(case: PullOutCase) -> int:
+    """Return what the driver chooses."""
+    return ChosenSide.LEFT if case.side > 0 else ChosenSide.RIGHT
+
+
+def case_labels(case: PullOutCase) -> dict[str, str | float]:
+    """Return what a case is called in the table."""
+    return {**case._asdict(), "kind": KINDS[case.kind]}

@@ -1,0 +1,38 @@
+"""What differs from run to run beside the factors of ``apa-world``, and the ranges that are wider than there."""
+
+from orchestrator.studies.parking.world import factors as world
+from orchestrator.studies.sweep.study.space import Factor
+
+NONE, HITCH, RACK = 0, 1, 2
+WALL, PARKED_CARS = 1, 2
+ROW = (
+    Factor("cars_a", "1", 0, 0, 3, "cars beyond the first neighbour", ("0", "1", "2", "3")),
+    Factor("cars_b", "1", 0, 0, 3, "cars beyond the second neighbour", ("0", "1", "2", "3")),
+    Factor("gap_a", "m", 0.4, 0.8, 1.2, "between the cars beyond the first neighbour"),
+    Factor("gap_b", "m", 0.4, 0.8, 1.2, "between the cars beyond the second neighbour"),
+)
+SURROUNDINGS = (
+    Factor("opposite", "1", 0, 0, 2, "across the road", ("nothing", "wall", "parked cars")),
+    Factor("street", "m", 5.0, 7.0, 10.0, "from the slot's mouth to what stands across the road"),
+    Factor("overhang", "1", 0, 0, 2, "at the first neighbour, towards the slot or the road", ("none", "hitch", "rack")),
+    Factor("overhang_length", "m", 0.1, 0.2, 0.6, "how far the hitch or rack stands out"),
+    Factor("pillar", "1", 0, 0, 3, "beside the slot's mouth", ("none", "none", "at the first", "at the second")),
+    Factor("bin", "1", 0, 0, 9, "in the slot, which is then none", (*("none",) * 9, "bin")),
+    Factor("lost_count", "1", 0, 0, 11, "sensors that fail at once", tuple(map(str, range(1, 13)))),
+)
+WIDER = {
+    "person_speed": (0.5, 2.5),
+    "slope": (-12.0, 12.0),
+    "bank": (-12.0, 12.0),
+    "kerb_height": (0.03, 0.2),
+}
+"""Ranges of factors of ``apa-world``, by name."""
+OWN = (*ROW, *SURROUNDINGS)
+
+
+def _widen(factor: Factor) -> Factor:
+    low, high = WIDER.get(factor.name, (factor.low, factor.high))
+    return factor._replace(low=low, high=high)
+
+
+FACTORS = (*map(_widen, world.FACTORS), *OWN)

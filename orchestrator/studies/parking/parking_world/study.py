@@ -1,0 +1,129 @@
+"""``apa sweep parking-world``: parking in ordinary streets and car parks, by any system, and what it prints."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from rich.table import Table as Printed
+
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.scenario.requirements import library_requirements
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.studies.parking.cases import KINDS
+from orchestrator.studies.parking.parking_world.factors import FACTORS
+from orchestrator.studies.parking.parking_world.outcome import (
+    DRIVER,
+    ENDLESS,
+    ENDS,
+    FALSE,
+    FOUND,
+    MEASURES,
+    MOVING,
+    PARKED,
+    STANDING,
+)
+from orchestrator.studies.parking.parking_world.scene import parameters
+from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.world import study as world
+from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
+from orchestrator.studies.sweep.fields import Field, find_field
+from orchestrator.studies.sweep.study.design import Design
+from orchestrator.studies.sweep.study.space import Seeds, Space
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.table import Table
+from orchestrator.text.console import console
+from orchestrator.verdict.confidence import percent_interval
+
+APA_SYSTEM = 5
+VALET_SYSTEM = 7
+OF_SYSTEM = {VALET_SYSTEM: {"search.active": True, "plan.margin": 0.12}}
+"""Parameters of a system that searches only if it is told to."""
+MOST_ROWS = 20
+
+
+def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
+    """Return the study; ``system``: the number of ``controller.system`` that parks, on the same rows."""
+    space = Space(FACTORS, _stack)
+    shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
+    seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
+    shared = scenario(system)
+    content = {
+        "name": "parking-world" if system == APA_SYSTEM else f"parking-world-{system}",
+        "title": "Parking beside ordinary roads and in car parks",
+        "description": "Parked: within GB/T 41630 of a slot by ISO 16787, no contact.",
+        "map": {"x": "extra", "y": "cars_a", "split": "kind"},
+        "seed": seed,
+        "system": system,
+    }
+    seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
+    within = {GBT[kind]: world.limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
+    design = Design(_fields(shared), space.values(shares, seeds), seeds, space.values_by_name(shares))
+    return Study(shared, design, content, seeded, MEASURES, within, FOUND, space)
+
+
+def scenario(system: int) -> Scenario:
+    """Return what all runs share."""
+    base = world.scenario()
+    update = {
+        "name": "parking-world",
+        "controller": {"system": system, **OF_SYSTEM.get(system, {})},
+        "requirements": [*library_requirements("no-contact")],
+    }
+    return base.model_copy(update=update)
+
+
+def _fields(shared: Scenario) -> list[Field]:
+    one = Space(FACTORS, _stack)
+    return [find_field(name, shared) for name in parameters(one.values_by_name(one.nominal()[None]), np.array([1]))]
+
+
+def _stack(values: Mapping[str, Array], seeds: Seeds) -> Array:
+    return np.column_stack(list(parameters(values, seeds).values()))
+
+
+def report(table: Table, folder: Path) -> int:
+    """Print how the runs ended. Returns 1 if the system touched something, claims falsely, or has no end."""
+    ends, to = table.column("end"), console()
+    groups = groups_of(table)
+    printed = Printed(box=None, pad_edge=False)
+    for name in ("end", *groups):
+        printed.add_column(name, justify="left" if name == "end" else "right")
+    printed.add_row("runs", *(str(int(chosen.sum())) for chosen in groups.values()))
+    for end in ENDS:
+        counts = [(int((ends[chosen] == end).sum()), max(int(chosen.sum()), 1)) for chosen in groups.values()]
+        printed.add_row(end, *(f"{count} ({100.0 * count / of:.2f} %)" for count, of in counts))
+    to.print(printed)
+    for line in shares_of(table):
+        to.print(line, highlight=False)
+    worst = np.flatnonzero(np.isin(ends, (MOVING, STANDING, FALSE, ENDLESS)))
+    to.print(f"rows: {', '.join(map(str, worst[:MOST_ROWS].tolist())) or 'none'}", highlight=False)
+    return 1 if len(worst) else 0
+
+
+def groups_of(table: Table) -> dict[str, Array]:
+    """Return which runs are told apart: a name, and for each run whether it is one of them."""
+    kinds = table.column("kind")
+    quiet = (table.column("person") < NOBODY) & (table.column("mover") < NOBODY) & (table.column("lost") < NO_SENSOR)
+    rows = (table.column("cars_a") + table.column("cars_b")) > 0
+    sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}
+    return {"all": np.full(len(kinds), True), **sides, "static, healthy": quiet, "static, healthy, rows": quiet & rows}
+
+
+def shares_of(table: Table) -> list[str]:
+    """Return lines of shares, each reduced denominator with the full figure beside it."""
+    ends, valid, groups = table.column("end"), table.column("valid") == 1.0, groups_of(table)
+    parked, full = ends == PARKED, int((ends == PARKED).sum())
+    lines = []
+    for name, chosen in groups.items():
+        of = valid & chosen
+        count, total = int(parked[of].sum()), int(of.sum())
+        interval = percent_interval(count, total) if total else "-"
+        share = 100.0 * count / max(total, 1)
+        lines.append(
+            f"parked of valid, {name}: {count} of {total}, {share:.2f} % (95 %: {interval}); "
+            f"of all runs {full} of {len(ends)}"
+        )
+    contacts = {end: int((ends == end).sum()) for end in (MOVING, STANDING, DRIVER)}
+    lines.append(f"contacts of {len(ends)} runs: " + ", ".join(f"{end} {count}" for end, count in contacts.items()))
+    return lines

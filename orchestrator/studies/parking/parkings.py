@@ -1,0 +1,170 @@
+"""What every run of the grid came to: the slot it found, how it stands, by which limits."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.slot import Kind, Side, Slot
+from modelkit.vocabulary import Pose
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.studies.parking.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
+from orchestrator.studies.parking.start_range import is_inside
+from orchestrator.studies.sweep.columns import WITHIN
+from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
+from orchestrator.verdict.frame import in_frame
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
+
+PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
+FALSE_DETECTION_DISTANCE = 0.5
+"""A slot found further off than this [m], or of the wrong kind, is one that is not there."""
+SHOWN = Instants("controller.apa.mode", (int(Mode.PARKING_SPACE_APPEARS),))
+"""While the car stands to plan, and the slot it found is shown."""
+POSE, ODOMETRY = "shown.pose", "shown.odometry"
+CORNERS = ("shown.a", "shown.b")
+SIGNALS = {
+    **{f"{POSE}.{axis}": f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")},
+    **{f"{ODOMETRY}.{axis}": f"vehicle.odometry.{axis}" for axis in ("x", "y", "heading")},
+    **{f"{CORNERS[0]}.{axis}": f"controller.apa.slot.a.{axis}" for axis in ("x", "y")},
+    **{f"{CORNERS[1]}.{axis}": f"controller.apa.corner_b.{axis}" for axis in ("x", "y")},
+    "shown.kind": "controller.apa.slot.kind",
+}
+MEASURES = {
+    "mode": Measure("last", "controller.apa.mode"),
+    "parking_time": Measure("last", "controller.apa.parking_time"),
+    **{name: Measure("first", signal, SHOWN) for name, signal in SIGNALS.items()},
+}
+GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}
+HOUSE, HOUSE_BUT_SHIFTS = "house", "house, but for the manoeuvres"
+
+
+class GridRun(NamedTuple):
+    """One run of the grid."""
+
+    case: GridCase
+    mode: int
+    reason: str
+    lateral: float
+    """Final errors against the true slot [m, rad]."""
+    heading: float
+    manoeuvres: int
+    parking_time: float
+    nearest: float
+    """Smallest clearance of the whole run [m]."""
+    corner_a: float
+    """How far from the true corners the car thinks they are when it stands to plan [m], both seen from the car;
+    NaN if no slot was found."""
+    corner_b: float
+    along: float
+    """x of the rear axle beyond corner B when the car stood to plan [m]; NaN if it did not."""
+    kind: int
+    """The slot found: as what, 0 none."""
+    inside: bool
+    """It stood inside the start range, see :mod:`orchestrator.studies.parking.start_range`."""
+    is_gbt: bool
+    """Parked within GB/T 41630: heading, lateral position, manoeuvres, no contact."""
+    is_house: bool
+    """Parked within the house limits."""
+    is_house_except_manoeuvres: bool
+    """The same with the manoeuvres of GB/T 41630."""
+
+    @property
+    def is_ghost(self) -> bool:
+        """Whether the slot that was shown is not there: neither corner's place nor its kind is that of one."""
+        shown = self.kind != 0
+        return shown and (self.kind != self.case.kind or max(self.corner_a, self.corner_b) > FALSE_DETECTION_DISTANCE)
+
+    @property
+    def is_ended(self) -> bool:
+        """Whether the run ended by itself: parked, or in Fail with its reason."""
+        return self.mode == PARKED or (self.mode == FAILED and self.reason != "none")
+
+
+def parkings(columns: Mapping[str, Any]) -> list[GridRun]:
+    """Return the runs of a table, by the names of its columns."""
+    return [_parking(dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
+
+
+def _parking(row: Mapping[str, Any]) -> GridRun:
+    case = cases(int(row["lot"]))[int(row["number"])]
+    parked = row["outcome"] == "parked"
+    gbt = parked and row[WITHIN.format(GBT[case.kind])]
+    return GridRun(
+        case,
+        int(row["mode"]),
+        row["reason"],
+        row["final.lateral_error"],
+        row["final.heading_error"],
+        int(row["manoeuvres"]),
+        row["parking_time"],
+        row["min_clearance"],
+        row["corner_a"],
+        row["corner_b"],
+        row["along"],
+        0 if math.isnan(row["shown.kind"]) else int(row["shown.kind"]),
+        bool(row["inside"]),
+        bool(gbt),
+        bool(gbt and row[WITHIN.format(HOUSE)]),
+        bool(gbt and row[WITHIN.format(HOUSE_BUT_SHIFTS)]),
+    )
+
+
+def _detection_columns(columns: Columns) -> Mapping[str, Array]:
+    """Return how well the slot was found, of each run."""
+    names = ("lot", "number", *SIGNALS)
+    rows = zip(*(columns[name].tolist() for name in names), strict=True)
+    found = [_how_found(dict(zip(names, row, strict=True))) for row in rows]
+    return dict(zip(FOUND.columns, np.array(found).T, strict=True))
+
+
+def _how_found(row: Mapping[str, float]) -> tuple[float, float, float, float]:
+    case = cases(int(row["lot"]))[int(row["number"])]
+    if math.isnan(row["shown.kind"]):
+        return math.nan, math.nan, math.nan, 0.0
+    pose = pose_of(row, POSE)
+    inside = is_inside(pose, true_slot(case), parameters(case)[1])
+    return *corner_errors(case, row), pose.x - case.length, float(inside)
+
+
+def true_slot(case: GridCase) -> Slot:
+    """Return the slot of a case as it is, its corner A at the world's origin."""
+    side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
+    slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
+    return slot._replace(depth=CARS[case.car].width + WALL_DISTANCE) if case.kind == Kind.PARALLEL else slot
+
+
+def corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:
+    """Return the distances [m] of A and B as believed from the true corners, seen from the car.
+
+    What the odometry has drifted before it saw the corner does not matter, what it drifts after does.
+    """
+    true, believed = pose_of(row, POSE), pose_of(row, ODOMETRY)
+    found = ((row[f"{name}.x"], row[f"{name}.y"]) for name in CORNERS)
+    pairs = zip(found, ((0.0, 0.0), (case.length, 0.0)), strict=True)
+    a, b = (math.dist(_in_frame(believed, one), _in_frame(true, other)) for one, other in pairs)
+    return a, b
+
+
+def pose_of(row: Mapping[str, float], name: str) -> Pose:
+    """Return a pose that was kept of a run under this name."""
+    return Pose(row[f"{name}.x"], row[f"{name}.y"], row[f"{name}.heading"])
+
+
+def _in_frame(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
+    return in_frame(*point, 0.0, pose)[:2]
+
+
+FOUND = DerivedParameter(
+    {
+        "corner_a": Metric(
+            "m", "distance of the estimated corner A from the true one, in the vehicle frame; NaN: no slot detected"
+        ),
+        "corner_b": Metric("m", "the same of corner B"),
+        "along": Metric("m", "x of the rear axle beyond corner B when the car stood to plan"),
+        "inside": Metric("1", "1: it stood inside the start range then"),
+    },
+    _detection_columns,
+)

@@ -1,0 +1,142 @@
+"""The grid of the parking assist as a study: cars, slots, distances, headings, bodies, speeds."""
+
+import math
+from pathlib import Path
+
+from rich.table import Table as Printed
+
+from controller_fmu.apa.chart import Mode
+from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.studies.parking.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
+from orchestrator.studies.parking.parkings import (
+    FAILED,
+    FOUND,
+    GBT,
+    HOUSE,
+    HOUSE_BUT_SHIFTS,
+    MEASURES,
+    GridRun,
+    parkings,
+)
+from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.table import Table
+from orchestrator.text.console import console
+
+GBT_SETS = dict(zip(KINDS, ("gbt41630", "gbt41630-perpendicular"), strict=True))
+CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="house")
+
+
+def study(lot: int = 0) -> Study:
+    """Return the whole grid; ``lot``: which draw of speeds, noise and odometry errors."""
+    return study_of(cases(lot))
+
+
+def study_of(chosen: list[GridCase]) -> Study:
+    """Return the study of some cases."""
+    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
+    content = {
+        "name": "apa-grid",
+        "title": "The parking assist over cars, slots, distances, headings and bodies",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, manoeuvres if parallel), no contact.",
+        "map": {"x": "extra", "y": "beside", "split": "kind"},
+        "lot": chosen[0].lot,
+    }
+    within = {
+        **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
+        HOUSE: [*library_requirements("apa"), CLEAR],
+        HOUSE_BUT_SHIFTS: [*library_requirements("apa-tight"), CLEAR],
+    }
+    return Study(scenario, design, content, measures=MEASURES, within=within, derived=FOUND)
+
+
+def report(table: Table, folder: Path) -> int:
+    """Print a line for each run that misses GB/T 41630, and the totals. Returns 1 if a run touched something."""
+    found = parkings({name: table.column(name) for name in table.names()})
+    to = console()
+    for item in found:
+        if item.is_ghost or not item.is_gbt:
+            to.print(line(item), soft_wrap=True, highlight=False)
+    to.print(_totals(found))
+    to.print(_by_size(found))
+    return 1 if any(item.nearest <= 0.0 for item in found) else 0
+
+
+def totals(found: list[GridRun]) -> dict[str, int]:
+    """Return how many runs did what."""
+    return {
+        "runs": len(found),
+        "touched something": sum(item.nearest <= 0.0 for item in found),
+        "parked within GB/T 41630": sum(item.is_gbt for item in found),
+        "parked within the house limits": sum(item.is_house for item in found),
+        "ended in Fail with a reason": sum(item.mode == FAILED and item.is_ended for item in found),
+        "ended in neither way": sum(not item.is_ended for item in found),
+        "slot found": sum(item.kind != 0 for item in found),
+        "both corners within 10 cm": sum(max(item.corner_a, item.corner_b) <= 0.1 for item in found),
+        "found a slot that is not there": sum(item.is_ghost for item in found),
+    }
+
+
+def line(item: GridRun) -> str:
+    """Return one run in words."""
+    case = item.case
+    verdict = "house" if item.is_house else "gbt" if item.is_gbt else "-"
+    return (
+        f"{case.number:4d} {case.car} {KINDS[case.kind]} {SIDES[case.side]} +{case.extra:.1f} m, "
+        f"{case.beside:.1f} m beside, {math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
+        f"{'inside' if item.inside else 'outside'}: {Mode(item.mode).name.lower()} ({item.reason}), "
+        f"{100.0 * item.lateral:+.1f} cm {math.degrees(item.heading):+.2f} deg, {item.manoeuvres} manoeuvres, "
+        f"{item.parking_time:.0f} s, {100.0 * item.nearest:.0f} cm clear, "
+        f"corners {100.0 * item.corner_a:.0f} and {100.0 * item.corner_b:.0f} cm: {verdict}"
+    )
+
+
+def _labels(case: GridCase) -> dict[str, str | float]:
+    return {
+        **{"number": case.number, "car": case.car, "kind": KINDS[case.kind], "side": SIDES[case.side]},
+        **{"extra": case.extra, "beside": case.beside, "heading": round(math.degrees(case.heading))},
+        **{"body": case.body, "speed": case.speed, "length": case.length, "lot": case.lot},
+    }
+
+
+def _totals(found: list[GridRun]) -> Printed:
+    """Return the totals: of all runs, of those from inside the start range, of the rest, of those without a slot."""
+    groups = {
+        "all": found,
+        "from inside the start range": [item for item in found if item.inside],
+        "from outside": [item for item in found if item.kind != 0 and not item.inside],
+        "no slot found": [item for item in found if item.kind == 0],
+    }
+    table = Printed(box=None, pad_edge=False)
+    table.add_column("")
+    for name in groups:
+        table.add_column(name, justify="right")
+    columns = [(totals(group), max(len(group), 1)) for group in groups.values()]
+    for name in columns[0][0]:
+        texts = (
+            str(numbers[name]) if name == "runs" else f"{numbers[name]} ({100.0 * numbers[name] / count:.1f} %)"
+            for numbers, count in columns
+        )
+        table.add_row(name, *texts)
+    return table
+
+
+def _by_size(found: list[GridRun]) -> Printed:
+    """Return how the limits are met in slots of each size: what a slot allows depends on it."""
+    table = Printed(box=None, pad_edge=False)
+    columns = ("slot", "runs", "GB/T", "house", "house, but manoeuvres as GB/T", "manoeuvres", "nearest")
+    for name in columns:
+        table.add_column(name, justify="left" if name == "slot" else "right")
+    for kind, extra in [(kind, extra) for kind, extras in EXTRA.items() for extra in extras]:
+        group = [item for item in found if (item.case.kind, item.case.extra) == (kind, extra)]
+        if not group:
+            continue
+        manoeuvres = sorted(item.manoeuvres for item in group)
+        table.add_row(
+            f"{KINDS[kind]}, ISO's shortest + {extra:.1f} m",
+            *map(str, (len(group), sum(item.is_gbt for item in group), sum(item.is_house for item in group))),
+            str(sum(item.is_house_except_manoeuvres for item in group)),
+            f"{manoeuvres[0]} to {manoeuvres[-1]}",
+            f"{100.0 * min(item.nearest for item in group):.0f} cm",
+        )
+    return table

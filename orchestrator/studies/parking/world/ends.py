@@ -1,0 +1,262 @@
+"""What became of a run in the world: a contact is its end, whatever the controller says after it."""
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from controller_fmu.apa.chart import Mode
+from modelkit.geometry import Box, boxes_gap, line_box, outline
+from modelkit.vocabulary import Pose
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.world.asked import COLUMNS, HEARD, feasibility_columns
+from orchestrator.studies.parking.world.factors import NOBODY
+from orchestrator.studies.parking.world.scene import THINGS, WHEEL
+from orchestrator.studies.sweep.columns import WITHIN
+from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Objective
+from orchestrator.verdict.measures import Instants, Measure
+from orchestrator.verdict.numbers import Metric
+from orchestrator.verdict.outcome import BEYOND
+from orchestrator.verdict.standing import outline_margin
+from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
+
+TOUCHING = Instants("vehicle.contact", (1,))
+AXES = ("x", "y", "heading")
+FIRST = {
+    **{f"touched.{axis}": f"vehicle.pose.{axis}" for axis in AXES},
+    "touched.speed": "vehicle.speed",
+    "touched.mode": "controller.apa.mode",
+    "touched.takeover": "vehicle.driver_takeover",
+}
+"""Column -> signal at the first instant at which something is touched."""
+DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
+"""In these the car is the assist's, unless the driver has taken over."""
+CLAIMED = ("final heading", "final lateral position", "outline in the slot")
+NO_CONTACT = (Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched"),)
+MEASURES = {
+    "mode": Measure("last", "controller.apa.mode"),
+    "parking_time": Measure("last", "controller.apa.parking_time"),
+    **{name: Measure("first", signal, TOUCHING) for name, signal in FIRST.items()},
+    "assist.clearance": Measure(
+        "smallest", "vehicle.clearance", Instants("controller.apa.mode", tuple(map(int, DRIVES)))
+    ),
+    "touched.time": Measure("time", "vehicle.speed", TOUCHING),
+}
+Judge = Callable[[Mapping[str, Any], "InitialContact | None"], str]
+MEASURES_OF_ANY = {
+    **{f"touched.{axis}": Measure("first", f"vehicle.pose.{axis}", TOUCHING) for axis in AXES},
+    "touched.speed": Measure("first", "vehicle.speed", TOUCHING),
+    "touched.takeover": Measure("first", "vehicle.driver_takeover", TOUCHING),
+    "touched.steering_active": Measure("first", "controller.steering_active", TOUCHING),
+    "touched.time": Measure("time", "vehicle.speed", TOUCHING),
+}
+"""What the end of a run is told by where the system has no mode of the assist."""
+CONTACT, DRIVER, WALKED_INTO, LOW_KERB = "contact", "contact, driver drives", "walked into", "wheel at a low kerb"
+PARKED, FALSE, FAILED, UNUSED, ENDLESS = "parked", "false parked", "gave up", "not in use", "endless"
+ENDS = {
+    CONTACT: "touched something while the assist drives, or while it holds the car",
+    FALSE: "claims to be parked outside the slot or beyond GB/T 41630",
+    ENDLESS: "neither parked nor given up at the stop time",
+    PARKED: "parked within GB/T 41630, nothing touched",
+    FAILED: "gave up, nothing touched",
+    UNUSED: "the driver was too fast for the assist to begin",
+    DRIVER: "touched something while the driver drives",
+    WALKED_INTO: "somebody, or a neighbour, moved into the car: it would have touched it standing, too",
+    LOW_KERB: "a tyre against a kerb that is too low to be heard; nothing of the body touches it",
+}
+"""How a run in the world ends, the worst first."""
+
+
+def _ends(columns: Columns, judge: Judge | None = None) -> Mapping[str, Array]:
+    """Return the end of each run, what was touched first, and whether the run asks for what can be had."""
+    rows = [
+        dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
+    ]
+    touched = [None if math.isnan(row["touched.x"]) else first_contact(row) for row in rows]
+    judge = end_of if judge is None else judge
+    found = [judge(row, first) for row, first in zip(rows, touched, strict=True)]
+    into = [end == CONTACT and is_driven_into(row, first) for row, end, first in zip(rows, found, touched, strict=True)]
+    return {
+        **feasibility_columns(columns),
+        "driven_into": np.array(into, dtype=float),
+        "end": np.array(found, dtype=object),
+        "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
+    }
+
+
+def _ends_of_any(columns: Columns) -> Mapping[str, Array]:
+    """Return the same of a system without the assist's modes."""
+    return _ends(columns, end_of_any)
+
+
+def _plain(values: Any) -> list[Any]:
+    return list(np.asarray(values).tolist())
+
+
+class InitialContact(NamedTuple):
+    """What a car has touched first."""
+
+    name: str
+    came: bool
+    """It would have touched the car one exchange before, too: it came, the car did not bring it about."""
+
+
+def end_of(row: Mapping[str, Any], touched: InitialContact | None) -> str:
+    """Return how a run ended, one of ``ENDS``."""
+    if touched is not None:
+        driven = row["touched.mode"] in DRIVES and not row["touched.takeover"]
+        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
+        return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
+    if row["mode"] == Mode.FAIL:
+        return FAILED if row["reason"] != "none" else ENDLESS
+    if row["mode"] != Mode.PARKING_FINISH:
+        return UNUSED if row["mode"] == Mode.STANDBY else ENDLESS
+    return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
+
+
+def end_of_any(row: Mapping[str, Any], touched: InitialContact | None) -> str:
+    """Return how a run of any system ended, one of ``ENDS``: who steers says who drives, the outcome what it claims."""
+    if touched is not None:
+        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
+        driven = row["touched.steering_active"] and not row["touched.takeover"]
+        return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
+    if row["outcome"] == "parked" or row["reason"].startswith(BEYOND):
+        return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
+    return FAILED if row["outcome"] == "failed" else ENDLESS
+
+
+def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
+    """Return whether a car is within GB/T 41630 among neighbours of whom one has moved away, as they stand at the end.
+
+    One who leaves a parallel row makes its slot longer by his way; one who stands out of a perpendicular row moves
+    its line by half of that.
+    """
+    if row.get("mover", 0) < NOBODY:
+        return False
+    way = math.copysign(min(abs(row["mover_way"]), _neighbour_travel(row)), row["mover_way"])
+    margin = row["final.outline_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
+    turned, aside, out, manoeuvres = _limits_of(int(row["kind"]) + 1)
+    heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
+    near = heading <= turned and lateral <= aside and margin >= -out
+    return bool(near and row["manoeuvres"] <= manoeuvres)
+
+
+def _margin(row: Mapping[str, Any], out: float) -> float:
+    """Return how far [m] a car is within its slot at the end, if that lies so much further ``out``; negative: not."""
+    c, s = math.cos(row["slot.heading"]), math.sin(row["slot.heading"])
+    slot = [row["slot.x"] + out * c, row["slot.y"] + out * s, *(row[f"slot.{name}"] for name in SLOT)]
+    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
+    car = [wheelbase + front, rear, 0.5 * width, wheelbase]
+    pose = [row[f"final.{axis}"] for axis in AXES]
+    return float(outline_margin(*(np.array([item]) for item in (pose, slot, car)))[0])
+
+
+@cache
+def _limits_of(kind: int) -> tuple[float, ...]:
+    """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its manoeuvres."""
+    return tuple(abs(float(item.limit)) for item in library_requirements(GBT_SETS[kind], *CLAIMED, "manoeuvres"))
+
+
+def _neighbour_travel(row: Mapping[str, Any]) -> float:
+    """Return how far [m] a neighbour who moves could have come by the end of the run."""
+    return float(max(0.0, row["duration"] - row["mover_at"]) * row["mover_speed"])
+
+
+def first_contact(row: Mapping[str, Any]) -> InitialContact:
+    """Return what the car is nearest to when it touches something for the first time."""
+    pose = Pose(*(row[f"touched.{axis}"] for axis in AXES))
+    things = _things(row)
+    name = min(things, key=lambda name: _gap(row, pose, *things[name]))
+    way = row["touched.speed"] * row["step"]
+    before = Pose(pose.x - way * math.cos(pose.heading), pose.y - way * math.sin(pose.heading), pose.heading)
+    return InitialContact(
+        name, name in MOVABLE_OBSTACLES and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0
+    )
+
+
+def is_driven_into(row: Mapping[str, Any], touched: InitialContact | None) -> bool:
+    """Return whether somebody who moves has touched a car that stands: it could have done no more."""
+    if touched is None or touched.name not in MOVABLE_OBSTACLES:
+        return False
+    return abs(row["touched.speed"]) <= STANDSTILL_SPEED and _is_moving(row, touched.name)
+
+
+STANDSTILL_SPEED = 0.01
+"""A car no faster [m/s] stands: so the assist sees it."""
+MOVABLE_OBSTACLES = THINGS[:2] + THINGS[3:4]
+KERB = THINGS[-1]
+GROUND_CLEARANCE = SceneParams().ground_clearance
+"""Kerbs lower than this [m] pass under the bumpers."""
+
+
+def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
+    """Return what stands there as the car touches something, and whether it is under the bumpers."""
+    boxes = [Obstacle(**{name: row.get(f"{_box(n)}.{name}", start) for name, start in EMPTY.items()}) for n in BOXES]
+    time_ns = round(row["touched.time"] * 1e9)
+    there = {THINGS[n]: (obstacle_box(box, time_ns), False) for n, box in enumerate(boxes) if is_there(box, time_ns)}
+    height = row["vehicle.scene.kerbs[1].height"]
+    if height > 0.0:
+        ends = (row[f"vehicle.scene.kerbs[1].{end}"] for end in ("x1", "y1", "x2", "y2"))
+        there[KERB] = (line_box(*ends), height < GROUND_CLEARANCE)
+    return there
+
+
+BOXES = range(1, len(THINGS))
+EMPTY = Obstacle()._asdict()
+SLOT = ("heading", "length", "width")
+CAR = ("wheelbase", "front_overhang", "rear_overhang", "width")
+
+
+def _box(number: int) -> str:
+    return f"vehicle.scene.boxes[{number}]"
+
+
+def _is_moving(row: Mapping[str, Any], name: str) -> bool:
+    box = _box(THINGS.index(name) + 1)
+    moves = row[f"{box}.moves_at"] <= row["touched.time"] <= row.get(f"{box}.halts_at", math.inf) + row["step"]
+    return bool(moves and (row.get(f"{box}.speed_x", 0.0) or row[f"{box}.speed_y"]))
+
+
+def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
+    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
+    front, rear = (WHEEL, WHEEL) if under else (front, rear)
+    return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
+
+
+def _clear(columns: Columns) -> Array:
+    """Return how near [m] the car has come to anything since the assist has it; 0 or less: touched, or not measured."""
+    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)  # the assist has never had the car
+    unknown = np.isnan(np.asarray(columns["mode"])) | np.isnan(np.asarray(columns["min_clearance"]))
+    ends = np.asarray(columns["end"])
+    touched, nearest = ends == CONTACT, np.where(ends == LOW_KERB, LARGEST, nearest)
+    margins = np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST))
+    return np.asarray(np.where(unknown, -LARGEST, margins))
+
+
+def _honest(columns: Columns) -> Array:
+    """Return by how much a run that claims to be parked is within GB/T 41630, as a share of its limits."""
+    heading, lateral = np.abs(columns["final.heading_error"]), np.abs(columns["final.lateral_error"])
+    turned, aside, out = (abs(float(item.limit)) for item in library_requirements("gbt41630", *CLAIMED))
+    shares = [1.0 - heading / turned, 1.0 - lateral / aside, 1.0 + columns["final.outline_margin"] / out]
+    least = np.minimum(np.min(shares, axis=0), 1.0)
+    ends = np.asarray(columns["end"])
+    found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))
+    return np.asarray(np.where(np.isnan(np.asarray(columns["mode"])), -1.0, found))
+
+
+LEAST, LARGEST = 1e-4, 0.5
+"""Margins of runs that have not touched anything [m]."""
+GOALS = (
+    Objective("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
+    Objective("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
+)
+INTO = {"driven_into": Metric("1", "1: contact at standstill caused by a moving obstacle")}
+FOUND = DerivedParameter(
+    {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
+)
+FOUND_BY_ANY = FOUND._replace(make=_ends_of_any)

@@ -1,0 +1,174 @@
+"""The parking assist in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
+
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.table import Table as Printed
+
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.scenario.fault import Fault
+from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.studies.parking.cases import KINDS, gbt_limits
+from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.world.ends import (
+    CONTACT,
+    ENDLESS,
+    ENDS,
+    FALSE,
+    FOUND,
+    FOUND_BY_ANY,
+    GOALS,
+    MEASURES,
+    MEASURES_OF_ANY,
+    PARKED,
+    WALKED_INTO,
+)
+from orchestrator.studies.parking.world.factors import FACTORS, NO_SENSOR, NOBODY
+from orchestrator.studies.parking.world.scene import NEVER_TIME, SENSOR_COUNT, F, parameters
+from orchestrator.studies.sweep.fields import Field, find_field
+from orchestrator.studies.sweep.study.design import Design
+from orchestrator.studies.sweep.study.space import Factor, Seeds, Space
+from orchestrator.studies.sweep.study.study import Study
+from orchestrator.studies.sweep.table import Table
+from orchestrator.text.console import console
+from orchestrator.verdict.confidence import percent_interval
+
+STOP_TIME = 150.0
+BODY_STEP = 0.0025
+"""Internal steps [s] of the bodies with mass: top speeds are those of 1 ms to 2 mm/s, in half the time."""
+KERB = "kerb"
+"""Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
+
+
+APA_SYSTEM = 5
+"""The number of ``controller.system`` of the parking assist."""
+
+
+def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYSTEM) -> Study:
+    """Return the world; ``mild``: 1 for half the ranges; ``system``: number of ``controller.system``, same rows."""
+    world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
+    shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
+    seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
+    content = {
+        "name": "apa-world-mild" if mild else "apa-world",
+        "title": "The parking assist with all disturbances at once",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), no contact.",
+        "map": {"x": "extra", "y": "heading", "split": "kind"},
+        "seed": seed,
+        "mild": mild,
+    }
+    shared = scenario(system)
+    design = Design(fields(), world.values(shares, seeds), seeds, world.values_by_name(shares))
+    within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
+    seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
+    if system != APA_SYSTEM:
+        content |= {"name": f"{content['name']}-{system}", "system": system}
+        return Study(shared, design, content, seeded, MEASURES_OF_ANY, within, FOUND_BY_ANY, world)
+    return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
+
+
+def scenario(system: int = APA_SYSTEM) -> Scenario:
+    """Return what all runs share; the system is told neither slot nor target."""
+    return Scenario(
+        name="apa-world",
+        stop_time=STOP_TIME,
+        vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
+        controller={"system": system},
+        faults=[
+            Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)
+            for number in range(1, SENSOR_COUNT + 1)
+        ],
+        target=Target(x=0.0, y=0.0),
+        slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
+        requirements=[*limits_beside_neighbours("gbt41630"), *library_requirements("no-contact")],
+    )
+
+
+def fields() -> list[Field]:
+    """Return the columns of the design."""
+    shared = scenario()
+    one = Space(FACTORS, _stack)
+    names = parameters(one.values_by_name(one.nominal()[None]), np.array([1]))
+    return [find_field(name, shared) for name in names]
+
+
+def space(factors: list[Factor]) -> Space:
+    """Return factors and what they mean."""
+    return Space(factors, _stack)
+
+
+def _stack(values: F, seeds: Seeds) -> Array:
+    return np.column_stack(list(parameters(values, seeds).values()))
+
+
+def report(table: Table, folder: Path) -> int:
+    """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
+    ends, to = table.column("end"), console()
+    to.print(_ends(ends, groups(table)))
+    for line in _success_lines(table):
+        to.print(line, highlight=False)
+    for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
+        counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
+        to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
+    to.print(f"of the contacts, driven into while it stood: {int(table.column('driven_into').sum())}", highlight=False)
+    worst = np.flatnonzero(np.isin(ends, (CONTACT, FALSE, ENDLESS)))
+    to.print(f"rows: {', '.join(map(str, worst[:MOST_ROWS].tolist())) or 'none'}", highlight=False)
+    return 1 if len(worst) else 0
+
+
+def success_counts(table: Table) -> dict[str, tuple[int, int]]:
+    """Return how many are parked, of how many.
+
+    Of valid runs; of those of them that nobody walked into, which ends a run; of those whose task is possible too;
+    of these where nothing moves or fails.
+    """
+    ends, valid, asked = table.column("end"), table.column("valid") == 1.0, table.column("asked") == 1.0
+    quiet = groups(table)[QUIET]
+    chosen = {
+        "valid": valid,
+        "valid that nobody walked into": valid & (ends != WALKED_INTO),
+        "valid and asked": valid & asked,
+        f"these where {QUIET}": valid & asked & quiet,
+    }
+    return {name: (int((ends[of] == PARKED).sum()), int(of.sum())) for name, of in chosen.items()}
+
+
+def _success_lines(table: Table) -> list[str]:
+    lines = []
+    for name, (count, of) in success_counts(table).items():
+        share = 100.0 * count / max(of, 1)
+        lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {percent_interval(count, of)})")
+    return lines
+
+
+MOST_ROWS = 20
+QUIET = "nothing moves or fails"
+
+
+def groups(table: Table) -> dict[str, NDArray[np.bool_]]:
+    """Return which runs are told apart: a name, and for each run whether it is one of them."""
+    kinds, events = table.column("kind"), {name: table.column(name) for name in ("person", "mover", "lost")}
+    quiet = (events["person"] < NOBODY) & (events["mover"] < NOBODY) & (events["lost"] < NO_SENSOR)
+    sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}
+    return {"all": np.full(len(kinds), True), **sides, QUIET: quiet}
+
+
+def _ends(ends: Array, groups: Mapping[str, NDArray[np.bool_]]) -> Printed:
+    table = Printed(box=None, pad_edge=False)
+    for name in ("end", *groups):
+        table.add_column(name, justify="left" if name == "end" else "right")
+    table.add_row("runs", *(str(int(chosen.sum())) for chosen in groups.values()))
+    for end in ENDS:
+        counts = [(int((ends[chosen] == end).sum()), max(int(chosen.sum()), 1)) for chosen in groups.values()]
+        table.add_row(end, *(f"{count} ({100.0 * count / of:.2f} %)" for count, of in counts))
+    return table
+
+
+def limits_beside_neighbours(name: str) -> list[Requirement]:
+    """Return a set of GB/T 41630's limits, but for those against a kerb."""
+    return [item for item in gbt_limits(name) if item.where != KERB]

@@ -1,0 +1,122 @@
+"""The runs of a chunk, in one of two ways that give the same bits.
+
+The compiled batch: every run is one call of machine code, on threads, on all cores; no FMU, no log. Or one by one
+through the Python master, on FMUs or on the models in process.
+"""
+
+import threading
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from fmus.compiled_batch import (
+    FaultInputs,
+    RecordedSignal,
+    Rows,
+    SampleTime,
+    StopCondition,
+    compile_rows,
+    signals_to_read,
+)
+from fmus.native.compilers import find_compiler
+from fmus.study_slices import StudyCode, study_slices
+from modelkit.model import Model
+from orchestrator.cosim.fmu_instance import Array
+from orchestrator.scenario.end_condition import SPEED
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.studies.sweep.disturbed import fault_numbers, fault_receivers
+from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunk_scenario
+from orchestrator.studies.sweep.rows import FIRST_MEASURE, row_of
+from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM, Choices, StudyRows, choices_of, explanation
+from orchestrator.text.errors import RESOURCES, NotRunError
+from orchestrator.text.failures import reason_of
+from orchestrator.verdict.measures import Measure
+
+_compiling = threading.Lock()
+
+
+def run_batch(job: Job, chunk: Chunk) -> Array:
+    """Return one row of measures per run of ``chunk``."""
+    scenario = Scenario(**job.scenario)
+    parameters, times = arrays(job, chunk)
+    rows = compile_models(tuple(job.measures), scenario, own_choices(job, scenario, parameters))
+    out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
+    rows(parameters, times, fault_numbers(job, chunk, scenario), out)
+    return out
+
+
+def own_choices(job: Job, scenario: Scenario, parameters: Array) -> Choices | None:
+    """Return what the code made for a study is made for; None if it is too small for code of its own."""
+    return choices_of(scenario, parameters) if job.runs >= STUDY_CODE_FROM else None
+
+
+def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
+    """Return one row of measures per run of ``chunk``, read off its recording."""
+    paths = None if files is None else {name: Path(path) for name, path in files.items()}
+
+    def row(number: int) -> Array:
+        scenario = chunk_scenario(job, chunk, number)
+        ran = run_scenario(scenario, paths, kind=kind)
+        return row_of(ran.recording, scenario, job.measures)
+
+    return rows_by(row, len(chunk.seeds))
+
+
+def rows_by(row: Callable[[int], Array], count: int) -> Array:
+    """Return the rows of ``count`` runs. Raises ``NotRunError`` with the reasons of those that could not take place."""
+    rows, reasons = [], []
+    for number in range(count):
+        try:
+            rows.append(row(number))
+        except (NotRunError, *RESOURCES) as error:
+            reasons.append(reason_of(error))
+    if reasons:
+        raise NotRunError(*reasons)
+    return np.array(rows)
+
+
+def compile_models(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices | None = None) -> Rows:
+    """Return the compiled runs of the models of ``scenario``, made once per process.
+
+    ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
+    """
+    faults = tuple(item.inputs for item in fault_receivers(scenario))
+    with _compiling:
+        return _compile_rows(tuple(scenario.models.items()), measures, faults, choices, _ending(scenario))
+
+
+def explain(job: Job, chunk: Chunk) -> str:
+    """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
+    scenario = Scenario(**job.scenario)
+    models, kept = dict(scenario.models), [_signal_to_record(item) for item in job.measures]
+    choices = choices_of(scenario, arrays(job, chunk)[0])
+    return explanation(models, study_slices(models, signals_to_read(_ending(scenario), kept), dict(choices)))
+
+
+@lru_cache
+def _compile_rows(
+    models: tuple[tuple[str, Model], ...],
+    measures: tuple[Measure, ...],
+    faults: tuple[FaultInputs, ...],
+    choices: Choices | None,
+    ending: StopCondition,
+) -> Rows:
+    whole, kept = dict(models), [_signal_to_record(item) for item in measures]
+    complete = compile_rows(whole, ending, kept, faults)
+    if choices is None:
+        return complete
+    slices = study_slices(whole, signals_to_read(ending, kept), dict(choices))
+    code = StudyCode(slices, find_compiler().options_for_this_machine())
+    return StudyRows(complete, compile_rows(whole, ending, kept, faults, code))
+
+
+def _ending(scenario: Scenario) -> StopCondition:
+    end = scenario.stop_condition
+    return StopCondition(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
+
+
+def _signal_to_record(measure: Measure) -> RecordedSignal:
+    return RecordedSignal(measure.how, measure.signal, None if measure.when is None else SampleTime(*measure.when))

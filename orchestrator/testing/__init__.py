@@ -1,0 +1,1 @@
+"""Tests of many scenarios: suite, step tests, coverage, catalogue of standards."""

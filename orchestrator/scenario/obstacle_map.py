@@ -16,7 +16,7 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     room = sum(item.name.startswith("map[") for item in variables(scenario.models["controller"].params)) // 3
     if not room:
         return {}
-    polygons = enumerate(mapped_obstacles(scenario), start=1)
+    polygons = enumerate(obstacles_of_map(scenario), start=1)
     corners = [(x, y, number) for number, polygon in polygons for x, y in polygon]
     if room < len(corners):
         raise BadInput(f"{len(corners)} corners, the map holds {room}", file=scenario.file, key="obstacles")
@@ -26,7 +26,7 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     return parameters
 
 
-def mapped_obstacles(scenario: Scenario) -> list[Points]:
+def obstacles_of_map(scenario: Scenario) -> list[Points]:
     """Return the corners [m] of the polygons of a map: static obstacles, and kerbs as walls."""
     return [*static_obstacles(scenario), *_kerbs(scenario.vehicle)]
 

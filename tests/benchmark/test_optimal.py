@@ -182,7 +182,7 @@ def test_a_solution_that_passes_through_a_wall_is_invalid(
     x, y, heading = found.poses[len(found.poses) // 2]
     beside = [(x + 0.9 * math.sin(heading) * side, y - 0.9 * math.cos(heading) * side) for side in (1.0, 1.1)]
     monkeypatch.setattr(reference, "optimize", lambda *_: motion)
-    monkeypatch.setattr(reference, "mapped_obstacles", lambda _: [beside])
+    monkeypatch.setattr(reference, "obstacles_of_map", lambda _: [beside])
     optimum = find_optimum(ran.scenario, ran.recording)
     assert "of an obstacle between its knots" in optimum.reason
     assert main(["bench", "optimal", str(file), "--out", str(tmp_path / "a")]) == 1

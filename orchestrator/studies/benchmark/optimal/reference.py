@@ -12,7 +12,7 @@ import numpy as np
 
 from orchestrator.cosim.fmu_instance import Array
 from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.obstacle_map import mapped_obstacles
+from orchestrator.scenario.obstacle_map import obstacles_of_map
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.studies.benchmark.optimal.motion import INPUTS, STATES, MotionLimits, TimedMotion, drive_through
 from orchestrator.studies.benchmark.optimal.search import optimize
@@ -70,7 +70,7 @@ def find_optimum(scenario: Scenario, recording: Recording) -> Optimum:
     """Return the optimum near a drive that has parked. Raises ``BadInput`` if the drive has none to compare with."""
     if scenario.target is None or "controller.valet.margin" not in recording.signals:
         raise BadInput("expected a drive of the valet to a target", file=scenario.file)
-    obstacles = mapped_obstacles(scenario)
+    obstacles = obstacles_of_map(scenario)
     limits = limits_of(scenario, float(recording.signals["controller.valet.margin"].max()))
     driven = motion_of_drive(scenario, recording, limits)
     edges = np.array([edge for polygon in obstacles for edge in _edges(polygon)], dtype=float).reshape(-1, 2, 2)

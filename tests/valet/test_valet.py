@@ -154,7 +154,11 @@ class Twin(ModelInstance):
 
 @pytest.mark.parametrize(
     ("name", "stop"),
-    [("valet-angled-45", 22.0), ("valet-thing-in-the-way", 24.0), ("valet-search-perpendicular", 13.0)],
+    [
+        pytest.param("valet-angled-45", 22.0, marks=pytest.mark.release),
+        ("valet-thing-in-the-way", 24.0),
+        ("valet-search-perpendicular", 13.0),
+    ],
 )
 def test_a_drive_in_c_has_the_bits_of_cpython(
     name: str, stop: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -39,8 +39,11 @@ AS_MEANT = (
     "apa-switched-off",
     "apa-takeover",
     "apa-told-wrong",
+    "cicap-bicycle",
+    "cicap-child",
     "cicap-thing-in-slot",
     "valet-search-perpendicular",
+    "valet-told-wrong",
 )
 """Those that end as they are meant to; the others need what the system does not have yet, or go wrong."""
 

@@ -1,4 +1,4 @@
-"""Chains of echoes: ends by least squares, rows told apart, surfaces that a bumper approaches, start positions."""
+"""Chains of echoes: ends by least squares, rows separated, surfaces that a bumper approaches, start positions."""
 
 import math
 

@@ -15,6 +15,7 @@ import multiprocessing
 import os
 import pkgutil
 import resource
+import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -163,13 +164,15 @@ def _run_tests(mutant: Mutant | None, tests: list[str], limit: int, sender: Any)
     os.dup2(silence, 1)
     os.dup2(silence, 2)
     os.chdir(ROOT)
+    cache = tempfile.mkdtemp(prefix="mutant-")
     if mutant is not None:
         put_into_process(mutant)
-        leave_cache(Path(tempfile.mkdtemp(prefix="mutant-")))
+        leave_cache(Path(cache))
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         code = pytest.main([*words, *(f"tests/{name}" for name in tests)], plugins=[failure])
     sender.send(failure.name or ("" if code in (0, 5) else f"exit code {code}"))
     sender.close()
+    shutil.rmtree(cache, ignore_errors=True)
     os._exit(0)
 
 

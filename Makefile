@@ -97,8 +97,8 @@ $(VENV)/.test: $(VENV)/.run pyproject.toml
 CI_PACKAGES = --editable '.[native,sweep,export,test,docs]'
 ci-tools: ## Install all that CI needs at once, several packages at a time, and compile only what is imported
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --no-compile 'uv>=0.5,<1'
-	$(BIN)/uv pip install --quiet --python $(BIN)/python $(if $(PIP_CONSTRAINT),--constraint $(PIP_CONSTRAINT)) $(CI_PACKAGES) || \
+	$(BIN)/python -m pip install --quiet --no-compile 'uv>=0.5,<1' && \
+	    $(BIN)/uv pip install --quiet --python $(BIN)/python $(if $(PIP_CONSTRAINT),--constraint $(PIP_CONSTRAINT)) $(CI_PACKAGES) || \
 	    $(BIN)/python -m pip install --quiet --no-compile $(CI_PACKAGES)
 	$(INSTALL_TYPESCRIPT)
 	touch $(VENV)/.run $(VENV)/.test $(VENV)/.docs

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from apa_cosim.runs import Run, load_scenario, read_log, run, scenario_names
     from apa_cosim.studies import StudyTable, read_table, sweep
     from apa_cosim.verdicts import compare, judge
-    from orchestrator.comparison.compare import Comparison
-    from orchestrator.scenario.scenario import Scenario
-    from orchestrator.text.errors import BadInput
-    from orchestrator.verdict.judge import Check
-    from orchestrator.verdict.summary import Summary
+    from orchestrator.evaluation.comparison.compare import Comparison
+    from orchestrator.evaluation.verdict.judge import Check
+    from orchestrator.evaluation.verdict.summary import Summary
+    from orchestrator.inputs.scenario.scenario import Scenario
+    from orchestrator.inputs.text.errors import BadInput
 
 __all__ = [
     "BadInput",
@@ -46,11 +46,11 @@ _HOMES = {
     "apa_cosim.runs": ("Run", "load_scenario", "read_log", "run", "scenario_names"),
     "apa_cosim.studies": ("StudyTable", "read_table", "sweep"),
     "apa_cosim.verdicts": ("compare", "judge"),
-    "orchestrator.comparison.compare": ("Comparison",),
-    "orchestrator.scenario.scenario": ("Scenario",),
-    "orchestrator.text.errors": ("BadInput",),
-    "orchestrator.verdict.judge": ("Check",),
-    "orchestrator.verdict.summary": ("Summary",),
+    "orchestrator.evaluation.comparison.compare": ("Comparison",),
+    "orchestrator.inputs.scenario.scenario": ("Scenario",),
+    "orchestrator.inputs.text.errors": ("BadInput",),
+    "orchestrator.evaluation.verdict.judge": ("Check",),
+    "orchestrator.evaluation.verdict.summary": ("Summary",),
 }
 
 

@@ -68,7 +68,7 @@ class StepTestItem(pytest.Item):
     def runtest(self) -> None:
         """Fail with signal, time, value, limit and margin."""
         from apa_cosim.testing import assert_met
-        from orchestrator.scenario.scenario import PENETRATION
+        from orchestrator.inputs.scenario.scenario import PENETRATION
 
         assert isinstance(self.parent, StepTestFile)
         names = (self.name, PENETRATION)

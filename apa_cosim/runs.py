@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.kinds import default_kind
-from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import log_file, read_info
-from orchestrator.log.read_log import read_log as read_recording
-from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import log_file, read_info
+from orchestrator.presentation.log.read_log import read_log as read_recording
 from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, load_bound_scenario, parameters_of
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.kinds import default_kind
+from orchestrator.simulation.cosim.recording import Recording
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,7 +66,7 @@ class Run:
         try:
             return self.signals[name]
         except KeyError:
-            from orchestrator.text.errors import suggestion
+            from orchestrator.inputs.text.errors import suggestion
 
             raise KeyError(f"{name}: no such signal{suggestion(name, self.signals)}") from None
 
@@ -82,8 +82,8 @@ class Run:
 
     def plot(self) -> "Figure":
         """Return the picture of the run: top view, speed, position and heading over time, states."""
-        from orchestrator.drawing.figure import overview
-        from orchestrator.drawing.seen import overview_of
+        from orchestrator.presentation.drawing.figure import overview
+        from orchestrator.presentation.drawing.seen import overview_of
 
         return overview(overview_of(self.recording, self.summary, self.scenario))
 
@@ -92,9 +92,9 @@ class Run:
 
         Raises ``BadInput`` if the folder has the log of another run: a folder is one run's.
         """
-        from orchestrator.report.replay import write_replay
-        from orchestrator.report.results import LOG, PAGE, write_picture, write_summary
-        from orchestrator.text.owned import lock_folder
+        from orchestrator.inputs.text.owned import lock_folder
+        from orchestrator.presentation.report.replay import write_replay
+        from orchestrator.presentation.report.results import LOG, PAGE, write_picture, write_summary
 
         path = Path(folder)
         with lock_folder(path):
@@ -112,7 +112,7 @@ class Run:
 
     def _repr_html_(self) -> str:
         """Return the replay for a notebook."""
-        from orchestrator.report.replay import replay_page
+        from orchestrator.presentation.report.replay import replay_page
 
         page = replay_page(self.recording, self.summary, [])
         return FRAME.format(page=html.escape(page, quote=True), title=html.escape(self.scenario.title))

@@ -8,19 +8,19 @@ import pytest
 
 from apa_cosim.runs import Run, record_scenario, with_foreign
 from apa_cosim.verdicts import judge
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.kinds import default_kind
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.limit_text import sentence
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.renamed_names import API
 from orchestrator.session.foreign import ImportedFmus
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.kinds import default_kind
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.drive import drive
 from orchestrator.testing.steptest.run import run_step_test
 from orchestrator.testing.steptest.step_test import StepTest, load_step_test
 from orchestrator.testing.steptest.verdict import judge_step_test
-from orchestrator.text.renamed_names import API
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.limit_text import sentence
 
 Same = TypeVar("Same", bound="ClosedLoopRun")
 

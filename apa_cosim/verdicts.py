@@ -7,15 +7,15 @@ from typing import Any
 from pydantic import ValidationError
 
 from apa_cosim.runs import Run
-from orchestrator.comparison.compare import Comparison
-from orchestrator.comparison.compare import compare as compare_recordings
-from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.scenario.files import find_file
-from orchestrator.scenario.requirements import Requirement, read_requirements
-from orchestrator.text.yaml_file import explain
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.judge import judge as judge_recording
-from orchestrator.verdict.numbers import facts_of
+from orchestrator.evaluation.comparison.compare import Comparison
+from orchestrator.evaluation.comparison.compare import compare as compare_recordings
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.judge import judge as judge_recording
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.inputs.scenario.files import find_file
+from orchestrator.inputs.scenario.requirements import Requirement, read_requirements
+from orchestrator.inputs.text.yaml_file import explain
 
 
 def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any]) -> list[Check]:

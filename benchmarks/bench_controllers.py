@@ -30,10 +30,10 @@ from controller_fmu.zhang2022.qp import MAX_STAGES, solve
 from fmus.native.libraries import declare_functions, memory_size, model_files
 from fmus.native.library_cache import cache_library
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.recording import inputs_seen
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.recording import inputs_seen
 from orchestrator.studies.bakeoff.entries import CONTROLLERS, scenario_of
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))

@@ -9,9 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.results import record, size
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import SimulationResult, run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 
 ROUNDS = size(5, 1)
 

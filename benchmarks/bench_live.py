@@ -12,7 +12,7 @@ from typing import Any
 from benchmarks.bench_sweep import bound
 from benchmarks.results import SKIPPED, record, size
 from docs.pictures import FLAGS
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
 from orchestrator.studies.sweep.batch import run_batch

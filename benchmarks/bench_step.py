@@ -19,15 +19,15 @@ from benchmarks.results import record, size
 from fmus.compiled_batch import compile_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.compiled_master import CompiledMaster
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.local_instance import LocalInstance
-from orchestrator.export.system_of import system_of
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.presentation.export.system_of import system_of
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.compiled_master import CompiledMaster
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.local_instance import LocalInstance
 
 ROUNDS = size(7, 1)
 STEPS = size(2000, 50)

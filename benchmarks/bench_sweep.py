@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.results import record, size
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.sweep.batch import compile_models, run_batch
 from orchestrator.studies.sweep.disturbed import fault_numbers
 from orchestrator.studies.sweep.engine import cores

@@ -18,12 +18,12 @@ import numpy as np
 from benchmarks.results import record, size
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.evaluation.verdict.geometry import CarOutline, vehicle_parameters
+from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.geometry import CarOutline, vehicle_parameters
-from orchestrator.verdict.polygons import polygon_clearances
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 
 STEP_NS = 10_000_000
 PASSES = size(3, 1)

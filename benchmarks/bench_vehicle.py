@@ -23,9 +23,9 @@ from benchmarks.results import record, size
 from fmus.native.libraries import model_files
 from fmus.native.library_cache import cache_library
 from modelkit.vocabulary import Pose, Prompt
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from vehicle_fmu import MODEL
 from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.bodies.double_track import DoubleTrackParams, DoubleTrackState, step_double_track

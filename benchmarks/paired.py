@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.errors import BadInput
 
 PARKED = "parked"
 HARM = ("contact", "false parked", "endless")

@@ -19,7 +19,7 @@ from controller_fmu.common.slot_clearance import Outline, SlotBounds, outline_of
 from controller_fmu.registry import MODEL
 from controller_fmu.zhang2022.slot import slot_bounds
 from modelkit.variables import with_values
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.studies.sweep.table import Table
 
 Array = NDArray[np.float64]

@@ -5,9 +5,9 @@ from tempfile import TemporaryDirectory
 
 from marked import put
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.session.foreign import ImportedFmus
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.testing.catalogue.run import judge_standards
 from orchestrator.testing.catalogue.show import count_text, markdown
 from orchestrator.testing.suite.suite import SuiteConfig

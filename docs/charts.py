@@ -14,7 +14,7 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
 
 from generate import enums_of, label  # noqa: E402
 
-from orchestrator.drawing.chart_svg import Arc, chart_svg  # noqa: E402
+from orchestrator.presentation.drawing.chart_svg import Arc, chart_svg  # noqa: E402
 
 MERMAID = re.compile(r"^```mermaid\nstateDiagram-v2\n(.*?)^```\n", re.S | re.M)
 ARC = re.compile(r"^\s*(\w+) --> (\w+): (\w+)\s*$", re.M)

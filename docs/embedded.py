@@ -21,10 +21,10 @@ from fmus.native.library_cache import cache_library
 from fmus.native.sources import translate_model
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 
 FOLDER = Path(__file__).parent
 PAGE = FOLDER / "tables" / "embedded.md"

@@ -29,16 +29,20 @@ from modelkit.model import Model  # noqa: E402
 from modelkit.states import parts_of  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
-from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
-from orchestrator.scenario.catalogue import collapse_arrays, range_text, start_text, texts_of  # noqa: E402
-from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
-from orchestrator.scenario.fault import Fault  # noqa: E402
-from orchestrator.scenario.files import ROOM  # noqa: E402
-from orchestrator.scenario.load_scenario import NOT_WRITTEN, load_scenario, scenario_names  # noqa: E402
-from orchestrator.scenario.models import APART, MODELS, apart_models  # noqa: E402
-from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
-from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
-from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout  # noqa: E402
+from orchestrator.evaluation.verdict.judge import Check  # noqa: E402
+from orchestrator.evaluation.verdict.limit_text import requirement_text  # noqa: E402
+from orchestrator.evaluation.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
+from orchestrator.inputs.scenario.catalogue import collapse_arrays, range_text, start_text, texts_of  # noqa: E402
+from orchestrator.inputs.scenario.end_condition import EndCondition  # noqa: E402
+from orchestrator.inputs.scenario.fault import Fault  # noqa: E402
+from orchestrator.inputs.scenario.files import ROOM  # noqa: E402
+from orchestrator.inputs.scenario.load_scenario import NOT_WRITTEN, load_scenario, scenario_names  # noqa: E402
+from orchestrator.inputs.scenario.models import APART, MODELS, apart_models  # noqa: E402
+from orchestrator.inputs.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target  # noqa: E402
+from orchestrator.inputs.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout  # noqa: E402
+from orchestrator.inputs.text.command_parser import CommandParser  # noqa: E402
+from orchestrator.presentation.drawing.chart_svg import chart_svg  # noqa: E402
 from orchestrator.studies.live.page import NAME as LIVE  # noqa: E402
 from orchestrator.studies.live.page import write_live  # noqa: E402
 from orchestrator.studies.live.situation import page_scenarios  # noqa: E402
@@ -47,10 +51,6 @@ from orchestrator.studies.papers.paper_figures import FIGURES  # noqa: E402
 from orchestrator.studies.parking.parking_world.factors import FACTORS as PARKING_WORLD  # noqa: E402
 from orchestrator.studies.parking.world.factors import FACTORS as APA_WORLD  # noqa: E402
 from orchestrator.studies.sweep.study.space import Factor  # noqa: E402
-from orchestrator.text.command_parser import CommandParser  # noqa: E402
-from orchestrator.verdict.judge import Check  # noqa: E402
-from orchestrator.verdict.limit_text import requirement_text  # noqa: E402
-from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
 

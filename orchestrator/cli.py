@@ -15,9 +15,9 @@ from os import devnull
 from typing import Any
 
 from orchestrator.commands import COMMANDS
-from orchestrator.text.command_parser import CommandParser
-from orchestrator.text.ends import interrupt_within_limit
-from orchestrator.text.errors import SCARCE_RESOURCES
+from orchestrator.inputs.text.command_parser import CommandParser
+from orchestrator.inputs.text.ends import interrupt_within_limit
+from orchestrator.inputs.text.errors import SCARCE_RESOURCES
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
@@ -112,7 +112,7 @@ def _command(words: list[str]) -> int:
         os.environ.setdefault(name, value)
     os.environ["MPLBACKEND"] = "agg"  # a notebook's backend may be absent here, and nothing here opens a window
     _tolerant_streams()
-    from orchestrator.text.console import printable_streams
+    from orchestrator.inputs.text.console import printable_streams
 
     with printable_streams(), interrupt_within_limit() as interrupted:
         try:
@@ -123,7 +123,7 @@ def _command(words: list[str]) -> int:
         except (Exception, KeyboardInterrupt) as error:
             if _is_scarce(error) and not interrupted.is_set():
                 error = MemoryError() if not isinstance(error, OSError) else error
-            from orchestrator.text.failures import exit_code_and_message
+            from orchestrator.inputs.text.failures import exit_code_and_message
 
             code, line = exit_code_and_message(KeyboardInterrupt() if interrupted.is_set() else error, words)
             _complain(line)
@@ -212,8 +212,8 @@ class _Version(argparse.Action):
 @contextmanager
 def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
     """With ``--quiet`` nothing is printed but errors, and JSON if requested."""
+    from orchestrator.inputs.text.console import COMMAND, QUIET
     from orchestrator.session.trust import trusting
-    from orchestrator.text.console import COMMAND, QUIET
 
     token = QUIET.set(parsed.quiet)
     COMMAND.set(shlex.join(["apa", *parsed.words]))
@@ -233,7 +233,7 @@ def _complain(text: str) -> None:
         return
     from rich.markup import escape
 
-    from orchestrator.text.console import console
+    from orchestrator.inputs.text.console import console
 
     with suppress(OSError):
         console(sys.stderr).print(f"[bold red]apa:[/] {escape(text)}", soft_wrap=True)

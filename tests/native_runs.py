@@ -4,10 +4,10 @@ from functools import cache
 
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.simulation.cosim.recording import Recording
 
 
 @cache

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from fmus.compiler import translate
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("modelkit", "vehicle_fmu", "controller_fmu")

@@ -12,7 +12,10 @@ import pytest
 ROOT = Path(__file__).parent.parent
 FLOORS: tuple[tuple[str, ...], ...] = (
     ("modelkit", "fmus", "orchestrator"),
-    *((f"orchestrator.{name}",) for name in ("testing", "studies")),
+    *(
+        (f"orchestrator.{name}",)
+        for name in ("inputs", "simulation", "evaluation", "presentation", "testing", "studies")
+    ),
     ("vehicle_fmu", "controller_fmu"),
     ("fmus.cache_paths", "fmus.files", "fmus.children", "fmus.installation"),
     ("fmus.locks",),
@@ -28,18 +31,18 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.compiled_episodes",),
     ("fmus.build",),
     ("fmus.own_model", "fmus.policy_fmu", "fmus.sbom"),
-    ("orchestrator.text",),
-    ("orchestrator.scenario",),
-    ("orchestrator.cosim",),
-    ("orchestrator.foreign",),
-    ("orchestrator.system",),
-    ("orchestrator.verdict",),
-    ("orchestrator.comparison",),
-    ("orchestrator.drawing",),
-    ("orchestrator.log",),
-    ("orchestrator.stream",),
+    ("orchestrator.inputs.text",),
+    ("orchestrator.inputs.scenario",),
+    ("orchestrator.simulation.cosim",),
+    ("orchestrator.simulation.imported",),
+    ("orchestrator.simulation.system",),
+    ("orchestrator.evaluation.verdict",),
+    ("orchestrator.evaluation.comparison",),
+    ("orchestrator.presentation.drawing",),
+    ("orchestrator.presentation.log",),
+    ("orchestrator.session.stream",),
     ("orchestrator.session",),
-    ("orchestrator.report",),
+    ("orchestrator.presentation.report",),
     ("orchestrator.testing.steptest",),
     ("orchestrator.testing.suite", "orchestrator.testing.coverage"),
     ("orchestrator.testing.catalogue",),
@@ -47,7 +50,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.studies.identification",),
     ("orchestrator.studies.falsification",),
     ("orchestrator.studies.live",),
-    ("orchestrator.export",),
+    ("orchestrator.presentation.export",),
     (
         "orchestrator.studies.papers",
         "orchestrator.studies.bakeoff",
@@ -60,6 +63,8 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.__main__",),
 )
 """A room imports rooms of the floors above its own line only, never one beside it."""
+PACKAGES = ("inputs", "simulation", "evaluation", "presentation", "session", "testing", "studies", "commands", "cli")
+"""The packages of the orchestrator; each imports only those before it."""
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
 """These know of nothing but models."""
@@ -71,6 +76,7 @@ INSIDES = (
 )
 """Only these look into a model's package; the others take its ``MODEL``."""
 MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 40, 6, 5
+MAX_PACKAGES, MAX_ARROWS = 11, 28
 FILES_PER_FOLDER = 20
 """More are reported, not refused: a folder is one idea, and some ideas have many parts."""
 HOSTS = ("fmus", "orchestrator")
@@ -145,6 +151,15 @@ def test_no_arrow_goes_up_or_aside() -> None:
         if room_of(item.source) != room_of(item.target) and FLOOR[room_of(item.target)] >= FLOOR[room_of(item.source)]
     ]
     assert wrong == []
+
+
+def test_the_packages_of_the_orchestrator_are_few_and_in_order() -> None:
+    pairs = ((item.source.split(".")[:2], item.target.split(".")[:2]) for item in imports())
+    arrows = {(a[1], b[1]) for a, b in pairs if a[0] == b[0] == "orchestrator" and len(a) == len(b) == 2 and a != b}
+    wrong = [(a, b) for a, b in arrows if a != "__main__" and PACKAGES.index(b) >= PACKAGES.index(a)]
+    assert wrong == []
+    assert len(PACKAGES) <= MAX_PACKAGES
+    assert len({(a, b) for a, b in arrows if a in PACKAGES[:-1]}) <= MAX_ARROWS
 
 
 def test_no_files_import_each_other_in_a_circle() -> None:

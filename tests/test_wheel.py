@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.commands import COMMANDS
-from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.simulation.cosim.fmu_files import can_compile
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("apa_cosim", "modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")

@@ -9,8 +9,8 @@ from rich.table import Table
 from apa_cosim.gym.ids import IDS
 from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.ranking import Score, score
-from orchestrator.text.console import console
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import BadInput
 
 FIRST_SEED = 1_000_000
 """Of the scenes: training usually draws others."""

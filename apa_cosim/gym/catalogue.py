@@ -3,7 +3,7 @@
 from apa_cosim.gym.ids import Scenes
 from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.scene_source import SceneSource
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
 
 STOP_TIMES: dict[Scenes, float] = {"parallel": 60.0, "perpendicular": 60.0, "world": 120.0, "tpcap": 200.0}
 """When an episode is truncated [s]."""

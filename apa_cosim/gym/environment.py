@@ -24,8 +24,8 @@ from apa_cosim.gym.spaces import (
     observation_space,
 )
 from fmus.compiled_episodes import RUNNING
-from orchestrator.scenario.scenario import DONE
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.scenario import DONE
+from orchestrator.inputs.text.errors import BadInput
 
 ONE = np.zeros(1, dtype=np.int64)
 

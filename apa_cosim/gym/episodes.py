@@ -28,16 +28,16 @@ from fmus.compiled_episodes import (
 )
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.end_condition import SPEED
-from orchestrator.scenario.scenario import DONE, Scenario
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.numbers import CLEARANCE
+from orchestrator.evaluation.verdict.truth import GroundTruth
+from orchestrator.inputs.scenario.end_condition import SPEED
+from orchestrator.inputs.scenario.scenario import DONE, Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.disturbed import fault_receivers
 from orchestrator.studies.sweep.rows import FIRST_MEASURE, measures_for
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge_rows
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.numbers import CLEARANCE
-from orchestrator.verdict.truth import GroundTruth
 
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]

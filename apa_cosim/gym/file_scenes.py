@@ -16,20 +16,20 @@ from apa_cosim.gym.scene_source import Polygons, Scenes, Seeds
 from controller_fmu.policy.params import PolicyParams, PolicySystem
 from controller_fmu.policy.standalone import MODEL
 from modelkit.variables import variables
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.evaluation.verdict.geometry import edges
+from orchestrator.evaluation.verdict.truth import GroundTruth, join_truths, truth_of
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.tpcap import read_tpcap
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.parking.cases import BODY
 from orchestrator.studies.parking.world.study import BODY_STEP
 from orchestrator.studies.sweep.disturbed import numbers_for
 from orchestrator.studies.sweep.job import Chunk, arrays, make_job
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import edges
-from orchestrator.verdict.truth import GroundTruth, join_truths, truth_of
 from vehicle_fmu.scene import SceneParams
 
 BOX_COUNT = len(SceneParams().boxes)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
 from apa_cosim.gym.ids import Body
-from orchestrator.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 
 DEFAULT_PERIOD = 0.2
 """Between two actions [s]."""

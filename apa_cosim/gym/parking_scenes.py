@@ -10,9 +10,9 @@ import numpy as np
 
 from apa_cosim.gym.scene_source import SampledScenes, Seeds
 from controller_fmu.policy.params import PolicySystem
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS as KIND_NAMES
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world.factors import FACTORS, NEIGHBOURS, SLOT

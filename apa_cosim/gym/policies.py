@@ -6,7 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from apa_cosim.gym.spaces import Floats
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
 
 
 class Policy(Protocol):

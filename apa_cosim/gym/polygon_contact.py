@@ -3,9 +3,9 @@
 import numpy as np
 
 from apa_cosim.gym.scene_source import Polygons
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.polygons import polygon_clearances
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.simulation.cosim.fmu_instance import Array
 
 MAX_EXACT_CLEARANCE = 0.05
 """Clearances [m] below this are computed at each exchange; others where the car may have come nearer than this."""

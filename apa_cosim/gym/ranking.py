@@ -18,15 +18,15 @@ from apa_cosim.runs import with_foreign
 from controller_fmu import System
 from fmus.compiled_episodes import RUNNING
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.scenario.models import models_for
-from orchestrator.scenario.obstacle_map import map_of
-from orchestrator.scenario.scenario import DONE, Scenario
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.models import models_for
+from orchestrator.inputs.scenario.obstacle_map import map_of
+from orchestrator.inputs.scenario.scenario import DONE, Scenario
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 from orchestrator.session.foreign import ImportedFmus, fmu_of
 from orchestrator.session.session import Messages, run_instances
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
 
 RANDOM = "random"
 SIDE_BY_SIDE = 64

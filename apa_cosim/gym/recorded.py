@@ -16,10 +16,10 @@ from controller_fmu.policy.signals import ACTION_COUNT
 from fmus.native.libraries import load_model, memory_size
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.fmu_instance import Array, Ports
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import Messages, run_instances
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_instance import Array, Ports
 
 
 class RecordedEpisode(NamedTuple):

@@ -10,8 +10,8 @@ from PIL import Image, ImageDraw
 from apa_cosim.gym.episodes import Episodes
 from controller_fmu.policy.signals import SENSOR_COUNT
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.verdict.geometry import CarOutline, boxes, kerbs, place
+from orchestrator.evaluation.verdict.geometry import CarOutline, boxes, kerbs, place
+from orchestrator.simulation.cosim.fmu_instance import Array
 
 SIZE = (640, 480)
 """Width and height [pixels]."""

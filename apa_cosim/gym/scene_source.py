@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.truth import CAR_KEYS, GroundTruth
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.world.factors import FACTORS
 from orchestrator.studies.sweep.disturbed import numbers_for
 from orchestrator.studies.sweep.fields import find_field
@@ -18,7 +19,6 @@ from orchestrator.studies.sweep.job import Chunk, Job, Times, arrays, chunk_scen
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Factor, Space
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.verdict.truth import CAR_KEYS, GroundTruth
 
 Seeds = NDArray[np.int64]
 TARGET = ("x", "y", "heading")

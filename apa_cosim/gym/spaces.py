@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from controller_fmu.policy.model import OBSERVATION_LIMIT
 from controller_fmu.policy.signals import OBSERVATION_COUNT
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 
 Floats = NDArray[np.float32]
 LARGEST_SEED = 2**31 - 1

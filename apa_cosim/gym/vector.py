@@ -17,7 +17,7 @@ from apa_cosim.gym.options import GivenOptions, options_of
 from apa_cosim.gym.recorded import RecordedEpisode
 from apa_cosim.gym.spaces import LARGEST_SEED, SCENE_SEED, Floats, action_space, observation_space
 from fmus.compiled_episodes import RUNNING
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
 
 Doubles = NDArray[np.float64]
 SCENE_SEEDS, RESET_MASK = "scene_seeds", "reset_mask"

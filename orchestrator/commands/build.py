@@ -5,10 +5,10 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from orchestrator.cosim.fmu_files import build, build_into, select_platforms
-from orchestrator.cosim.kinds import KINDS
-from orchestrator.text.console import working
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.inputs.text.console import working
+from orchestrator.inputs.text.errors import BadInput, suggestion
+from orchestrator.simulation.cosim.fmu_files import build, build_into, select_platforms
+from orchestrator.simulation.cosim.kinds import KINDS
 
 if TYPE_CHECKING:
     from fmus.build import Built

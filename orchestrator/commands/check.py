@@ -4,15 +4,15 @@ import argparse
 import json
 from pathlib import Path
 
-from orchestrator.log.read_log import log_file, read_log
-from orchestrator.scenario.files import find_file
-from orchestrator.scenario.requirements import read_requirements
+from orchestrator.evaluation.verdict.judge import judge
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.inputs.scenario.files import find_file
+from orchestrator.inputs.scenario.requirements import read_requirements
+from orchestrator.inputs.text.console import console, say
+from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.terminal import checks_table
 from orchestrator.testing.suite.junit import Suite, cases_of, write_junit
-from orchestrator.text.console import console, say
-from orchestrator.verdict.judge import judge
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.numbers import facts_of
 
 EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630

@@ -7,15 +7,15 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from orchestrator.comparison.compare import DURATION, Comparison, compare
-from orchestrator.comparison.tolerance import Tolerance, read_tolerances
-from orchestrator.log.messages import read_messages
-from orchestrator.log.read_log import log_file, read_log
-from orchestrator.report.overlay import write_overlay
+from orchestrator.evaluation.comparison.compare import DURATION, Comparison, compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, read_tolerances
+from orchestrator.inputs.text.console import console, say
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.quantities import number
+from orchestrator.presentation.log.messages import read_messages
+from orchestrator.presentation.log.read_log import log_file, read_log
+from orchestrator.presentation.report.overlay import write_overlay
 from orchestrator.session.terminal import differences_table
-from orchestrator.text.console import console, say
-from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import number
 
 EXAMPLES = """examples:
   apa compare reference/run.mcap runs/guo2015-case4/run.mcap

@@ -4,9 +4,9 @@ import argparse
 from typing import NamedTuple
 
 from orchestrator.commands import STUDIES
-from orchestrator.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.text.command_parser import CommandParser
 from orchestrator.studies.sweep.study.study_file import study_names
-from orchestrator.text.command_parser import CommandParser
 
 EXAMPLES = """examples:
   apa completion bash > ~/.local/share/bash-completion/completions/apa

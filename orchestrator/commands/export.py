@@ -1,4 +1,4 @@
-"""``apa export``: a run, or the system, in the formats of other tools: modules of ``orchestrator/export``."""
+"""``apa export``: a run, or the system, in formats of other tools (``orchestrator/presentation/export``)."""
 
 import argparse
 
@@ -26,4 +26,4 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add one sub-command for each format."""
     formats = parser.add_subparsers(title="formats", metavar="FORMAT", required=True)
     for name, text in FORMATS.items():
-        formats.add_parser(name, help=text, description=text, module=f"orchestrator.export.{name}")
+        formats.add_parser(name, help=text, description=text, module=f"orchestrator.presentation.export.{name}")

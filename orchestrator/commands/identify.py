@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.files import write_whole
-from orchestrator.text.console import console, say, working
-from orchestrator.text.errors import NOT_PARKED, PARKED, BadInput
-from orchestrator.text.owned import lock_folder
-from orchestrator.text.quantities import number
+from orchestrator.inputs.text.console import console, say, working
+from orchestrator.inputs.text.errors import NOT_PARKED, PARKED, BadInput
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.quantities import number
 
 if TYPE_CHECKING:
     from orchestrator.studies.identification.result import Identification
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Identify, write, print. Returns 0 if all parameters are identified, else 1."""
-    from orchestrator.log.read_log import log_file
+    from orchestrator.presentation.log.read_log import log_file
     from orchestrator.studies.identification.car_file import base_car, write_car
     from orchestrator.studies.identification.identify import identify, usual_parameters
     from orchestrator.studies.identification.logs import Columns, read_drive

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.inputs.scenario.tpcap import read_tpcap
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.benchmark.parkbench import read_parkbench
-from orchestrator.text.errors import BadInput
 
 
 class Format(NamedTuple):

@@ -9,14 +9,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from orchestrator.commands import STUDIES
-from orchestrator.scenario.catalogue import Entry, entries, match_entries, range_text, start_text, systems
-from orchestrator.scenario.files import ROOM, car_names
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.requirements import read_requirements
+from orchestrator.evaluation.verdict.limit_text import requirement_text
+from orchestrator.inputs.scenario.catalogue import Entry, entries, match_entries, range_text, start_text, systems
+from orchestrator.inputs.scenario.files import ROOM, car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.requirements import read_requirements
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.study.study_file import study_names
-from orchestrator.text.console import console
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.limit_text import requirement_text
 
 EXAMPLES = """examples:
   apa list                             scenarios, controllers, cars, requirements, studies
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInput("only runs have a page; write: apa list runs [FOLDER] --page", key="--page")
     heads, rows = LISTS[arguments.what](arguments.pattern)
     if arguments.page:
-        from orchestrator.report.runs_page import write_runs_page
+        from orchestrator.presentation.report.runs_page import write_runs_page
 
         print(write_runs_page(Path(arguments.pattern or RUNS), rows))
         return 0
@@ -117,7 +117,7 @@ def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
 
 
 def _runs(folder: str | None) -> tuple[dict[str, str], Rows]:
-    from orchestrator.report.found_runs import find_runs
+    from orchestrator.presentation.report.found_runs import find_runs
 
     heads = {"time": "time", "scenario": "scenario", "overrides": "overrides", "outcome": "outcome", "path": "path"}
     return heads, find_runs(Path(folder or RUNS))

@@ -3,13 +3,13 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.errors import BAD_INPUT, PARKED, BadInput
 from orchestrator.studies.live.page import NAME, write_live
 from orchestrator.studies.live.situation import page_scenarios, why_not
 from orchestrator.testing.suite.suite import select_scenarios
-from orchestrator.text.console import say
-from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 
 EXAMPLES = """examples:
   apa live                                                writes live.html: all shipped scenarios

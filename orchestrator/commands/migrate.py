@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.scenario.migration import check_migrated, migrate
-from orchestrator.text.console import say
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.migration import check_migrated, migrate
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa migrate my-scenario.yaml                 rewrite the file in place

@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.log.recover import recover
-from orchestrator.text.console import say
-from orchestrator.text.owned import lock_with
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.owned import lock_with
+from orchestrator.presentation.log.recover import recover
 
 EXAMPLES = """examples:
   apa recover runs/guo2015-case4/run.mcap.part

@@ -5,10 +5,10 @@ import json
 from pathlib import Path
 
 from fmus.installation import missing_package
-from orchestrator.cosim.kinds import KINDS
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, PARKED, BadInput
 from orchestrator.session.terminal import print_summary
-from orchestrator.text.console import console
-from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, PARKED, BadInput
+from orchestrator.simulation.cosim.kinds import KINDS
 
 EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 17

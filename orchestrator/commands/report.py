@@ -3,14 +3,14 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.log.messages import read_messages
-from orchestrator.log.read_log import log_file, read_log
-from orchestrator.report.replay import write_replay
-from orchestrator.text.console import say, working
-from orchestrator.text.errors import PARKED, BadInput
-from orchestrator.text.owned import lock_with
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.summary import summarize
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.text.console import say, working
+from orchestrator.inputs.text.errors import PARKED, BadInput
+from orchestrator.inputs.text.owned import lock_with
+from orchestrator.presentation.log.messages import read_messages
+from orchestrator.presentation.log.read_log import log_file, read_log
+from orchestrator.presentation.report.replay import write_replay
 
 EXAMPLES = """examples:
   apa report runs/guo2015-case4                           writes runs/guo2015-case4/report.html
@@ -80,8 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write_figure(arguments: argparse.Namespace) -> int:
-    from orchestrator.drawing.decimation import decimate
-    from orchestrator.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
+    from orchestrator.presentation.drawing.decimation import decimate
+    from orchestrator.presentation.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
 
     check_figure(arguments.figure)
     if not 10 <= arguments.dpi <= 2400:
@@ -94,8 +94,8 @@ def _write_figure(arguments: argparse.Namespace) -> int:
 
 
 def _write_video(arguments: argparse.Namespace) -> int:
-    from orchestrator.drawing.seen import overview_of
-    from orchestrator.drawing.video import VideoOptions, check_video, write_video
+    from orchestrator.presentation.drawing.seen import overview_of
+    from orchestrator.presentation.drawing.video import VideoOptions, check_video, write_video
 
     width = arguments.width or "1280"
     if not width.removesuffix("px").strip().isdigit():

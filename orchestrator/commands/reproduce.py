@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.kinds import KINDS, default_kind
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 from orchestrator.studies.papers.papers import paper, papers
-from orchestrator.text.console import say
-from orchestrator.text.errors import NOT_PARKED, PARKED
-from orchestrator.text.owned import lock_folder
 
 if TYPE_CHECKING:
     from orchestrator.studies.papers.result import Drive, Driven

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 
 from orchestrator.commands.run.once import execute
-from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import log_file, read_log
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.summary import FmuUsed
+from orchestrator.inputs.text.console import console, say
+from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
+from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.foreign import FOREIGN, ImportedFmus, sha256_of
 from orchestrator.session.options import add_output_arguments
 from orchestrator.session.trust import require_trust
-from orchestrator.text.console import console, say
-from orchestrator.text.errors import BAD_INPUT, BadInput
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.summary import FmuUsed
+from orchestrator.simulation.cosim.recording import Recording
 
 EXAMPLES = """examples:
   apa rerun runs/guo2015-case4                     results in runs/guo2015-case4-rerun

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
 from orchestrator.commands import STUDIES
-from orchestrator.cosim.kinds import KINDS
-from orchestrator.drawing.save import check_picture
-from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
-from orchestrator.text.failures import verdict_stands
-from orchestrator.text.owned import lock_folder
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
+from orchestrator.inputs.text.failures import verdict_stands
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.presentation.drawing.save import check_picture
+from orchestrator.simulation.cosim.kinds import KINDS
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable

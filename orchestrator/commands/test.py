@@ -10,26 +10,26 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.kinds import KINDS, default_kind
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.files import find_file
-from orchestrator.scenario.models import MODELS, apart_models
-from orchestrator.scenario.requirements import read_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.files import find_file
+from orchestrator.inputs.scenario.models import MODELS, apart_models
+from orchestrator.inputs.scenario.requirements import read_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import Meter, Warnings, console, say
+from orchestrator.inputs.text.errors import INTERRUPTED, BadInput
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.readable import shortly
 from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments
 from orchestrator.session.provenance import start_record
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.interrupts import on_interrupt
+from orchestrator.simulation.cosim.kinds import KINDS, default_kind
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.catalogue.entries import is_catalogue
 from orchestrator.testing.suite.collection import write_collection
 from orchestrator.testing.suite.junit import Suite, write_junit
 from orchestrator.testing.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests, select_scenarios
-from orchestrator.text.console import Meter, Warnings, console, say
-from orchestrator.text.errors import INTERRUPTED, BadInput
-from orchestrator.text.owned import lock_folder
-from orchestrator.text.readable import shortly
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results

@@ -3,7 +3,7 @@
 import shutil
 import tempfile
 
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
 
 BYTES_PER_VALUE = 8
 """Bytes of a value in the scratch file."""

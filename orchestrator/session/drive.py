@@ -2,17 +2,17 @@
 
 from pathlib import Path
 
-from orchestrator.cosim.algorithm import Interrupt, Termination
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.signal_blocks import Times
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import Meter, Warnings, say
 from orchestrator.session.foreign import ImportedFmus
 from orchestrator.session.provenance import start_record
 from orchestrator.session.session import NOBODY, SimulationResult, run_scenario
-from orchestrator.stream.realtime import Realtime
-from orchestrator.text.console import Meter, Warnings, say
+from orchestrator.session.stream.realtime import Realtime
+from orchestrator.simulation.cosim.algorithm import Interrupt, Termination
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.interrupts import on_interrupt
+from orchestrator.simulation.cosim.signal_blocks import Times
 
 SHOWN_NS = 500_000_000
 """Simulated time between two looks at how far a run is."""

@@ -8,22 +8,29 @@ from fmpy.model_description import ModelDescription
 
 from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import FmuInstance, Ports
-from orchestrator.cosim.model_description import ports_of, read_description, variables_of_other_types
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.foreign.archive import binary, check_archive, pack
-from orchestrator.foreign.limits import FmuLimits
-from orchestrator.scenario.end_condition import EndCondition
-from orchestrator.scenario.load_scenario import load_system
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.end_condition import EndCondition
+from orchestrator.inputs.scenario.load_scenario import load_system
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import RESOURCES, BadInput, NotRunError, RunError
+from orchestrator.inputs.text.failures import reason_of
 from orchestrator.session.foreign import Fitting, ImportedFmus, fmu_of, load_bound_scenario, sha256_of
 from orchestrator.session.session import Messages, make_instances
-from orchestrator.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.system.remarks import NEEDED_INPUTS, loops, missing_for_the_verdict, not_fed, unsaid, without_consumer
-from orchestrator.system.signal_matching import Signals, match_signals
-from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
-from orchestrator.text.failures import reason_of
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance, Ports
+from orchestrator.simulation.cosim.model_description import ports_of, read_description, variables_of_other_types
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.imported.archive import binary, check_archive, pack
+from orchestrator.simulation.imported.limits import FmuLimits
+from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
+from orchestrator.simulation.system.remarks import (
+    NEEDED_INPUTS,
+    loops,
+    missing_for_the_verdict,
+    not_fed,
+    unsaid,
+    without_consumer,
+)
+from orchestrator.simulation.system.signal_matching import Signals, match_signals
 
 MAX_SHOWN = 6
 

@@ -8,18 +8,18 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from modelkit.variables import Variable
-from orchestrator.foreign.limits import FmuLimits
-from orchestrator.foreign.sandbox import sandbox_program
-from orchestrator.scenario.load_scenario import load_scenario, load_system, scenario_names
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.wiring.system_text import SystemText
+from orchestrator.inputs.scenario.load_scenario import load_scenario, load_system, scenario_names
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.wiring.system_text import SystemText
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.trust import require_trust
-from orchestrator.text.errors import BadInput
+from orchestrator.simulation.imported.limits import FmuLimits
+from orchestrator.simulation.imported.sandbox import sandbox_program
 
 if TYPE_CHECKING:
-    from orchestrator.cosim.fmu_instance import FmuInstance
-    from orchestrator.system.assemble import ElaboratedSystem
+    from orchestrator.simulation.cosim.fmu_instance import FmuInstance
+    from orchestrator.simulation.system.assemble import ElaboratedSystem
 
 FOREIGN = "foreign"
 """Kind of an FMU that is not one of ours."""
@@ -47,17 +47,17 @@ class ImportedFmus(NamedTuple):
         """Return the instance ``name`` that runs the FMU at ``path``."""
         model = MODELS.get(name)
         if self.is_in_process and not is_fmi3(path):
-            from orchestrator.cosim.local_instance import LocalInstance
+            from orchestrator.simulation.cosim.local_instance import LocalInstance
 
             return LocalInstance(name, path, parameters, log, model)
-        from orchestrator.foreign.remote_instance import RemoteInstance
+        from orchestrator.simulation.imported.remote_instance import RemoteInstance
 
         return RemoteInstance(name, path, parameters, log, model, limits=self.limits)
 
 
 def is_fmi3(path: Path) -> bool:
     """Return whether an FMU is FMI 3.0, which has a process of its own in any case."""
-    from orchestrator.cosim.model_description import read_description
+    from orchestrator.simulation.cosim.model_description import read_description
 
     return str(read_description(path).fmiVersion).startswith("3")
 
@@ -111,7 +111,7 @@ def fmu_of(text: str) -> Path:
         return own_fmu(text)
     path = Path(text)
     if path.is_dir():
-        from orchestrator.foreign.archive import pack
+        from orchestrator.simulation.imported.archive import pack
 
         return pack(path)
     if not path.is_file():
@@ -121,8 +121,8 @@ def fmu_of(text: str) -> Path:
 
 def parameters_of(path: Path, instance: str) -> list[Variable]:
     """Return the parameters of an FMU that takes the place of ``instance``. Raises ``BadInput``."""
-    from orchestrator.cosim.model_description import ports_of, read_description, text_parameters
-    from orchestrator.foreign.archive import check_archive
+    from orchestrator.simulation.cosim.model_description import ports_of, read_description, text_parameters
+    from orchestrator.simulation.imported.archive import check_archive
 
     check_archive(path)
     description = read_description(path)

@@ -4,8 +4,8 @@ import argparse
 import re
 from pathlib import Path
 
-from orchestrator.foreign.limits import MEMORY_BYTES, RUN_TIMEOUT, STEP_TIMEOUT
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.imported.limits import MEMORY_BYTES, RUN_TIMEOUT, STEP_TIMEOUT
 
 
 def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +59,7 @@ def add_output_arguments(parser: argparse.ArgumentParser, default: str) -> None:
 
 def seconds(text: str) -> float:
     """Return a limit of time [s] as the command line has it: ``5``, ``200 ms``."""
-    from orchestrator.text.quantities import number
+    from orchestrator.inputs.text.quantities import number
 
     try:
         found = number(text, "s")

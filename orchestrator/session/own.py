@@ -5,10 +5,10 @@ from pathlib import Path
 from threading import Lock
 
 from fmus.own_model import BadModel, build_own, own_model
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.kinds import default_kind
-from orchestrator.text.console import working
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.console import working
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim.kinds import default_kind
 
 READING = Lock()
 """A module is read anew each time: one at a time."""

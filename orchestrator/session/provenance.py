@@ -12,10 +12,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import COMMAND
 from orchestrator.session.foreign import FOREIGN, ImportedFmus, sha256_of
-from orchestrator.text.console import COMMAND
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
 GIT_TIMEOUT = 2.0
@@ -83,7 +83,7 @@ def _fmu_used(instance: FmuInstance, kind: str) -> dict[str, str]:
     used = {"name": instance.name, "kind": kind, "guid": instance.identity}
     path: Path | None = getattr(instance, "path", None)
     if path is None:
-        from orchestrator.cosim.fmu_files import ROOT, sources_hash
+        from orchestrator.simulation.cosim.fmu_files import ROOT, sources_hash
 
         return {**used, "path": str(ROOT), "sha256": sources_hash()}
     return {**used, "path": str(path.resolve()), "sha256": sha256_of(path)}

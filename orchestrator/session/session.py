@@ -6,29 +6,29 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from orchestrator.cosim.algorithm import CoSimulation, Interrupt, Observer, Termination, last_exchange
-from orchestrator.cosim.faults import manipulators
-from orchestrator.cosim.fmu_instance import Array, FmuInstance
-from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.cosim.signal_blocks import Times
-from orchestrator.cosim.stop_conditions import standstill
-from orchestrator.log.line import Line
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.plausible import implausible
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.plausible import implausible
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import RESOURCES, BadInput, NotRunError, RunError
+from orchestrator.inputs.text.quantities import NS_PER_SECOND
+from orchestrator.presentation.log.line import Line
 from orchestrator.session.cost import cost_text
 from orchestrator.session.foreign import ImportedFmus, undriven
 from orchestrator.session.provenance import provenance
-from orchestrator.stream.realtime import Realtime
-from orchestrator.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.system.remarks import remarks
-from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
-from orchestrator.text.quantities import NS_PER_SECOND
+from orchestrator.session.stream.realtime import Realtime
+from orchestrator.simulation.cosim.algorithm import CoSimulation, Interrupt, Observer, Termination, last_exchange
+from orchestrator.simulation.cosim.faults import manipulators
+from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance
+from orchestrator.simulation.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.cosim.recording import Recorder, Recording
+from orchestrator.simulation.cosim.signal_blocks import Times
+from orchestrator.simulation.cosim.stop_conditions import standstill
+from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
+from orchestrator.simulation.system.remarks import remarks
 
 if TYPE_CHECKING:
-    from orchestrator.log.mcap_log import McapLog
+    from orchestrator.presentation.log.mcap_log import McapLog
 
 PACED = "paced"
 """Instead of a kind of FMU: every exchange waits for its time, so there is nothing to gain by a compiled master."""
@@ -94,8 +94,8 @@ def make_instances(
         if files is None or name not in files:
             instances.append(ModelInstance(name, model, parameters))
         else:
-            from orchestrator.cosim.fmu_files import fmu_beside
-            from orchestrator.cosim.local_instance import LocalInstance
+            from orchestrator.simulation.cosim.fmu_files import fmu_beside
+            from orchestrator.simulation.cosim.local_instance import LocalInstance
 
             path = files[name] if model is MODELS[name] else fmu_beside(files[name], model)
             instances.append(LocalInstance(name, path, parameters, messages.from_fmu, model))
@@ -194,7 +194,7 @@ def _begin_log(
     messages: Messages,
 ) -> "McapLog":
     """Return the log at ``path`` to which the run will be written."""
-    from orchestrator.log.mcap_log import McapLog
+    from orchestrator.presentation.log.mcap_log import McapLog
 
     file = McapLog(path, system.instances, scenario, info)
     messages.listeners.append(file.say)
@@ -260,7 +260,7 @@ def _master(system: ElaboratedSystem, scenario: Scenario, stop_ns: int, kind: st
     """
     make: type[CoSimulation] = CoSimulation
     if kind == "native":
-        from orchestrator.cosim.compiled_master import CompiledMaster
+        from orchestrator.simulation.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
     master = make(system.instances, scenario.step_ns, stop_ns, scenario.decimation, system.connections)

@@ -7,13 +7,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from orchestrator.comparison.compare import Difference
-from orchestrator.text.console import console
-from orchestrator.text.quantities import RAD_PER_DEGREE
-from orchestrator.text.readable import changes_text, manoeuvres_text, precise, readable
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.limit_text import limit_text
-from orchestrator.verdict.summary import Final, Summary
+from orchestrator.evaluation.comparison.compare import Difference
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.limit_text import limit_text
+from orchestrator.evaluation.verdict.summary import Final, Summary
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
+from orchestrator.inputs.text.readable import changes_text, manoeuvres_text, precise, readable
 
 GOOD, SHORT, BAD = "bold green", "bold yellow", "bold red"
 COLOURS = {"parked": GOOD, "finished": GOOD, "not_parked": SHORT, "not_finished": SHORT, "failed": BAD, "aborted": BAD}

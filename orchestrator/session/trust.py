@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from orchestrator.text.console import QUIET, say
-from orchestrator.text.errors import BadInput, format_value
-from orchestrator.text.printable import printable
+from orchestrator.inputs.text.console import QUIET, say
+from orchestrator.inputs.text.errors import BadInput, format_value
+from orchestrator.inputs.text.printable import printable
 
 
 class _Policy:

@@ -10,13 +10,13 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.benchmark import scenes
 from orchestrator.studies.benchmark.driving import DrivenScene
 from orchestrator.studies.benchmark.parkbench import read_parkbench
 from orchestrator.studies.benchmark.planning import plan_scene
-from orchestrator.text.errors import BadInput
 from tests.benchmark.parkbench_scene import scene, write
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -11,7 +11,7 @@ import yaml
 from shapely.geometry import LineString, Polygon
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene
 from orchestrator.studies.benchmark.optimal import reference
 from orchestrator.studies.benchmark.optimal.motion import (

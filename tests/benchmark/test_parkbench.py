@@ -8,9 +8,9 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.benchmark.parkbench import DEFAULT_VEHICLE, map_corners, read_parkbench
-from orchestrator.text.errors import BadInput
 from tests.benchmark.parkbench_scene import HIGH, LOW, TARGET, WHEEL_STOP, large_scene, polyline, scene, write
 
 FAR = [(9000.0, 20.0), (9000.0, 21.0)]

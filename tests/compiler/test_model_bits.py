@@ -7,8 +7,8 @@ import pytest
 
 from fmus.compiler import translate
 from modelkit.variables import flatten
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import WARNINGS, ZIG, CModel, compiled
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from fmus.compiler import translate
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 from tests.compiler.c_model import COMPILER, ZIG, compiled
 from tests.compiler.language import load, model_of, whole_module
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from controller_fmu.registry import ControllerOutput
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
-from orchestrator.scenario.car import car_parameters
+from orchestrator.inputs.scenario.car import car_parameters
 from tests.controller.in_process import run
 from vehicle_fmu.interface import VehicleOutput
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.model_instance import ModelInstance
 
 Look = Callable[[int, Any, Any], bool]
 """Called at every exchange with time [ns], outputs of the vehicle and of the controller; true ends the run."""

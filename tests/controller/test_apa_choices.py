@@ -11,10 +11,10 @@ from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.out.moves import CLEAR
 from controller_fmu.apa.signals import Family
 from modelkit.vocabulary import Pose, Prompt
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from tests.controller.test_apa_pull_out import CAR, outline
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -126,7 +126,7 @@ def test_every_trouble_ends_with_its_reason(
 
 def _drive_unchecked(vehicle: dict[str, Any], controller: dict[str, Any]) -> Run:
     """``with_values`` refuses NaN at the edge; here it must get past it."""
-    from orchestrator.cosim import model_instance as in_process_instance
+    from orchestrator.simulation.cosim import model_instance as in_process_instance
 
     def force(cls: type[Any], changes: dict[str, Any]) -> Any:
         known = variables(cls)

@@ -18,7 +18,7 @@ from controller_fmu.guo2015.point_tracking import PointError, point_error, point
 from controller_fmu.guo2015.prompts import PROMPT_OF_PHASE
 from controller_fmu.registry import ControllerInput, ControllerParams, System
 from modelkit.vocabulary import Pose, Prompt
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 
 PARAMS = ControllerParams()
 ON_PATH = Tracking()

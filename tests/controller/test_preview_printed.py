@@ -10,7 +10,7 @@ from controller_fmu.preview.preview import Displacement, PreviewErrors, integrat
 from controller_fmu.preview.rule_tables import FORCE, STEERING_PRINTED, STEERING_SYMMETRIC
 from controller_fmu.preview.safe_speed import safe_speed
 from controller_fmu.preview.sequence import curve_distance, straight_distance
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 
 PARAMS = PreviewParams()
 TABLE_1 = "NB NB NM NB NB / NM NM NS PS PB / NM NS ZE PS PM / PB PS PS PM PM / NB NB PM PB PB"

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.studies.parking.stuck_wheel import BASES, HEADS, NEVER_TIME, StuckDrive, drive, line_of, scenario_of
 
 compiled = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -11,7 +11,7 @@ from controller_fmu.zhang2022.path import QuinticPath, Reference, at, through
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.quintic import quintic, shape
 from modelkit.vocabulary import Pose
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 
 PARAMS = ZhangParams()
 AXLE = FrontAxle(2.62, 0.6, 0.5)

@@ -12,7 +12,7 @@ import pytest
 import controller_fmu
 from modelkit.model import Chart
 from orchestrator.cli import main
-from orchestrator.scenario.wiring.modes import ModeList
+from orchestrator.inputs.scenario.wiring.modes import ModeList
 from orchestrator.testing.coverage.covered import chart_coverage, share
 from orchestrator.testing.coverage.tracer import decider, name_of, tracing
 from tests.orchestrator import c_fmus

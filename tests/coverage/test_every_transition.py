@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.scenario.models import MODELS, apart_models
+from orchestrator.inputs.scenario.models import MODELS, apart_models
 from orchestrator.testing.coverage.covered import ChartCoverage, chart_coverage
 from orchestrator.testing.coverage.tracer import name_of, tracing
 

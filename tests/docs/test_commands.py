@@ -16,7 +16,7 @@ import pytest
 import yaml
 
 from orchestrator.cli import main, parser
-from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 
 ROOT = Path(__file__).parents[2]
 RECIPES = {ROOT / "docs" / "extend.md", ROOT / "docs" / "extend-tools.md"}

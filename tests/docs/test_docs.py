@@ -14,17 +14,17 @@ from modelkit.variables import variables
 from orchestrator.cli import EPILOG, parser
 from orchestrator.commands import COMMANDS
 from orchestrator.commands.export import FORMATS
-from orchestrator.scenario.catalogue import split_index
-from orchestrator.scenario.end_condition import EndCondition
-from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.summary import Event, Final, FmuUsed, Summary
+from orchestrator.inputs.scenario.catalogue import split_index
+from orchestrator.inputs.scenario.end_condition import EndCondition
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.requirements import Occasion, Requirement, Window, read_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
+from orchestrator.inputs.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout
 from orchestrator.studies.sweep.study.study_file import load_study
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
 from tests.docs.scripts import script
 
 ROOT = Path(__file__).parents[2]
@@ -54,7 +54,7 @@ def commands() -> list[str]:
     pages = [page for page in PAGES if page.name not in RECIPES]
     texts = [text for page in pages for text in re.findall(r"`(apa [^`]+)`", page.read_text(encoding="utf-8"))]
     modules = [f"orchestrator.commands.{name}" for name in COMMANDS] + [
-        f"orchestrator.export.{name}" for name in FORMATS
+        f"orchestrator.presentation.export.{name}" for name in FORMATS
     ]
     examples = [line for name in modules for line in importlib.import_module(name).EXAMPLES.splitlines()]
     found = [*(" ".join(text.split()) for text in texts), *(line.strip() for line in [*examples, *EPILOG.splitlines()])]

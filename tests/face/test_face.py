@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import apa_cosim as apa
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
 
 PINNED = {
     "compare": "(a, b, *, absolute, relative, time, signals)",

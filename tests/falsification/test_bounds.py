@@ -8,9 +8,9 @@ import pytest
 from scipy.special import ndtr, ndtri
 from scipy.stats import beta
 
+from orchestrator.evaluation.verdict.confidence import clopper_pearson, percent_interval
 from orchestrator.studies.falsification.sensitivity import first_orders, total_index
 from orchestrator.studies.falsification.subset_simulation import subset_simulation
-from orchestrator.verdict.confidence import clopper_pearson, percent_interval
 
 
 def test_of_no_events_the_bound_is_three_over_n() -> None:

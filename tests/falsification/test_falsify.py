@@ -9,7 +9,9 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.falsification.begin import _open
 from orchestrator.studies.falsification.counterexamples import BITS, NOTES, rerun_counterexamples
@@ -18,8 +20,6 @@ from orchestrator.studies.falsification.shrink import away
 from orchestrator.studies.falsification.subject import Subject, _read_part
 from orchestrator.studies.falsification.written import space_of
 from orchestrator.studies.sweep.study.read_study import read_study
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.summary import summarize
 
 RUNS = {
     "n": 64,

@@ -9,7 +9,7 @@ from fmus.locks import one_at_a_time
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from modelkit.model import Model
-from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim.fmu_files import sources_hash
 
 FOLDER = DIST / "tests"
 KEPT_FINGERPRINTS = 3

@@ -13,7 +13,7 @@ from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2Ca
 from fmpy.logging import addLoggerProxy
 
 from fmus.contents.variables import limits
-from orchestrator.cosim.local_instance import LOADING
+from orchestrator.simulation.cosim.local_instance import LOADING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 

@@ -15,8 +15,8 @@ from fmpy import read_model_description
 from fmus.native.fmu import build
 from fmus.native.library_cache import C_FILES
 from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from tests.fmi.test_native_host import HERE
 

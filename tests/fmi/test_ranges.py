@@ -8,9 +8,9 @@ from controller_fmu import MODEL as CONTROLLER
 from fmus.contents.variables import fmi_variables, limits
 from modelkit.signal import Group, Role, Signal
 from modelkit.variables import limits_of, variables
-from orchestrator.scenario.files import car_names
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.files import car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.studies.bakeoff.entries import entries
 from orchestrator.studies.parking.cases import cases, parameters
 from orchestrator.studies.sweep.study.sampling import make_design

@@ -21,10 +21,10 @@ from fmus.native.compilers import FLAGS, find_compiler
 from fmus.native.platforms import PLATFORMS, host
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.variables import variables, with_values
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS as SHIPPED
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS as SHIPPED
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from tests.fmi.conftest import ALL_MODELS
 from tests.fmi.host import calculated, random_inputs
 from tests.fmi.raw import ERROR, OK, Library

@@ -20,7 +20,7 @@ from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.python import fmu as python_fmu
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from tests.fmi.built import native_fmu_of
 from tests.fmi.host import ERROR, OK, Host, random_inputs
 from tests.fmi.test_python_fmu import bits

@@ -13,7 +13,7 @@ from fmus.contents.variables import fmi_variables, limits
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten, variables, with_values
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from tests.fmi.host import DISCARD, ERROR, OK, Host, random_inputs
 from tests.fmi.test_python_fmu import bits
 from vehicle_fmu import MODEL as VEHICLE

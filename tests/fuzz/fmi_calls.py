@@ -7,7 +7,7 @@ from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
 from pathlib import Path
 from typing import Any
 
-from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from tests.fmi.raw import ERROR, OK, Library
 
 NUMBERS = (

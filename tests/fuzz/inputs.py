@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.plausible import LARGEST
+from orchestrator.inputs.scenario.plausible import LARGEST
+from orchestrator.presentation.log.read_log import read_log
 from tests.fuzz.limits import ask
 from tests.fuzz.more_texts import COLUMNS, SCENE, STEP_TEST
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fmus.contents.archive import archive_guid
-from orchestrator.log.read_log import read_log
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.errors import BadInput
 from tests.fuzz.fair_time import FairTime
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)

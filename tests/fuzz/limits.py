@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from orchestrator.cli import main
-from orchestrator.text.errors import INTERRUPTED
+from orchestrator.inputs.text.errors import INTERRUPTED
 from tests.fuzz.fair_time import FairTime
 
 LONGEST = 20.0

@@ -12,7 +12,7 @@ import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.records import Channel, McapRecord, Metadata
 
-from orchestrator.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parse_record, top_records
+from orchestrator.presentation.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parse_record, top_records
 from tests.fuzz.inputs import VALUES
 from tests.fuzz.limits import ask
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
-from orchestrator.foreign import worker
-from orchestrator.foreign.remote_instance import answer_of
+from orchestrator.simulation.imported import worker
+from orchestrator.simulation.imported.remote_instance import answer_of
 from tests.fuzz.limits import ask
 from tests.fuzz.logs import _json as odd_json
 from tests.fuzz.logs import damaged

@@ -14,11 +14,11 @@ from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 import fmus.cache_paths
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.foreign import load_bound_scenario
 from orchestrator.session.session import NOBODY, Messages, make_instances
-from orchestrator.system.assemble import elaborate
-from orchestrator.system.remarks import remarks
-from orchestrator.text.errors import BadInput
+from orchestrator.simulation.system.assemble import elaborate
+from orchestrator.simulation.system.remarks import remarks
 
 DEGREE = math.pi / 180.0
 ANGLES = {"rad": 1.0, "deg": DEGREE, "gon": math.pi / 200.0, "mrad": 0.001}

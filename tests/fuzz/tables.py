@@ -12,8 +12,8 @@ import numpy as np
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.testing.steptest.stimuli import StimulatedInput, stimulus
-from orchestrator.text.errors import BadInput
 
 T = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 UNITS = {

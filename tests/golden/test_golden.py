@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 import yaml
 
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 
 FILE = Path(__file__).parent / "scenarios.yaml"
 DIGITS = 6

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_files import can_compile
 
 pytest.importorskip("gymnasium", reason="the extra gym is not installed")
 if not can_compile():
@@ -134,7 +134,7 @@ def test_an_episode_is_recorded_with_the_same_bits_and_verdict(scenes: Any, tmp_
 @pytest.mark.slow
 def test_a_recorded_episode_has_the_bits_of_the_python_models() -> None:
     from apa_cosim.gym import recorded
-    from orchestrator.cosim.model_instance import ModelInstance
+    from orchestrator.simulation.cosim.model_instance import ModelInstance
 
     env = ParkingEnv("world", body="kinematic", stop_time=1.0)
     driven(env, 10, seed=2)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main as apa
-from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.simulation.cosim.fmu_files import can_compile
 
 pytest.importorskip("gymnasium", reason="the extra gym is not installed")
 pytest.importorskip("onnx", reason="onnx is not installed")
@@ -26,8 +26,8 @@ from apa_cosim.gym.policies import OnnxPolicy
 from apa_cosim.gym.ranking import for_system
 from apa_cosim.runs import load_scenario, run
 from fmus.policy_fmu import BadPolicy, build_policy_fmu, count_actions
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
 
 
 def network(file: Path, actions: int = 2, observations: int = 24) -> Path:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.compiled_vehicle import INPUTS, OUTPUTS, CompiledVehicle, InputSequence
 from orchestrator.studies.identification.signals import MeasuredDrive, Series, drive_of
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.logs import Columns, read_drive
 from orchestrator.studies.identification.signals import Series
-from orchestrator.text.errors import BadInput
 from tests.identification.drives import measurements_only, random_drive, simulated_log
 from tests.report.test_page import data_of
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.estimate import correlation_time
 from orchestrator.studies.identification.identify import identify
@@ -12,7 +13,6 @@ from orchestrator.studies.identification.parameter import ODOMETRY
 from orchestrator.studies.identification.playback import dead_time_resolution
 from orchestrator.studies.identification.result import Identification, as_json, sentence
 from orchestrator.studies.identification.signals import MeasuredDrive, Series, drive_of
-from orchestrator.text.errors import BadInput
 from tests.identification.drives import STEP, measurements_only, pair, random_drive, simulated_log
 
 PAIRS, COVERAGE = 20, 0.9

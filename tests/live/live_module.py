@@ -11,8 +11,8 @@ from fmus.compiled_batch import FAULTS
 from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.algorithm import last_exchange
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.algorithm import last_exchange
 from orchestrator.studies.sweep.disturbed import fault_receivers, numbers_for
 
 STOP_TIME, STANDSTILL = 0.0, 1.0

@@ -11,11 +11,11 @@ import pytest
 
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
-from orchestrator.cosim.algorithm import last_exchange
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.algorithm import last_exchange
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.live.situation import page_scenarios
 from orchestrator.testing.coverage.tracer import name_of, tracing
 from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of

@@ -9,13 +9,13 @@ import pytest
 import yaml
 
 from controller_fmu.registry import Phase
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.summary import summarize
 from tests.live.person import drive, hurries_once, never_obeys, obeys, standing_clock
 
 LARGEST_PAGE = 400_000

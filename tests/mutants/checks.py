@@ -28,7 +28,7 @@ QUICK = {"apa": ("apa-parallel", "apa-perpendicular")}
 
 def scenarios_of(system: str) -> list[str]:
     """Return the shipped scenarios of a system, the short ones of no picture first."""
-    from orchestrator.scenario.load_scenario import scenario_names
+    from orchestrator.inputs.scenario.load_scenario import scenario_names
 
     patterns = SCENARIOS.get(system, (f"{system}*",))
     return [name for name in scenario_names() if any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
@@ -60,7 +60,7 @@ def record(system: str) -> str:
     """Return the first scenario that does not end as ``tests/golden`` has it."""
     import yaml
 
-    from orchestrator.cosim.fmu_files import fmu_files
+    from orchestrator.simulation.cosim.fmu_files import fmu_files
     from orchestrator.studies.papers.drive import drive
     from tests.golden.test_golden import alike, told
 

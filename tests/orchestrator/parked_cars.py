@@ -9,12 +9,12 @@ from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from controller_fmu.interface import Reason
 from modelkit.car import Car, car_length
 from modelkit.variables import with_values
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.parking.cases import ISO
-from orchestrator.verdict.summary import summarize
 
 POSES = ("final heading", "final lateral position", "outline in the slot")
 """What GB/T 41630 asks of where a car stands; the assist stands flush with its neighbours, wherever the kerb is."""

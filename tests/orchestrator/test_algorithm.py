@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.cosim.recording import Recorder, Recording
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000

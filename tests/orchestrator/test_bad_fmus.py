@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import ROOT
-from orchestrator.log.read_log import read_log
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.simulation.cosim.fmu_files import ROOT
 from tests.orchestrator import bad_fmus, foreign_fmus
 
 SCENARIO = """

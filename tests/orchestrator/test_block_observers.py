@@ -8,13 +8,13 @@ import pytest
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from mcap.reader import make_reader
 
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.fmu_instance import all_values
-from orchestrator.cosim.stop_conditions import standstill
-from orchestrator.drawing.scene import Frames
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.drawing.scene import Frames
 from orchestrator.session.session import Messages, make_instances, run_scenario
-from orchestrator.verdict.geometry import CarOutline
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_instance import all_values
+from orchestrator.simulation.cosim.stop_conditions import standstill
 
 
 def messages(path: Path) -> dict[str, list[tuple[int, bytes]]]:

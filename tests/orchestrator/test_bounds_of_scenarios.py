@@ -8,14 +8,14 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.geometry import sample_path, things
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import Messages, make_instances, run_instances
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
+from orchestrator.simulation.cosim.model_instance import ModelInstance
 from orchestrator.testing.steptest.drive import drive
 from orchestrator.testing.steptest.step_test import load_step_test
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import sample_path, things
 
 
 @pytest.mark.parametrize("corners", [[], [[0, 0]], [[0, 0], [1, 0]]])

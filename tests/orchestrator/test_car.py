@@ -7,14 +7,14 @@ import pytest
 
 from modelkit.car import Car
 from modelkit.variables import variables
-from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.files import ROOM, car_names
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.files import ROOM, car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.yaml_file import read_mapping
 from orchestrator.studies.sweep.study.sampling import make_design
 from orchestrator.studies.sweep.study.study_file import StudyFile
-from orchestrator.text.errors import BadInput
-from orchestrator.text.yaml_file import read_mapping
 
 BASE = "extends: guo2015-case4\n"
 

@@ -4,11 +4,11 @@ from typing import Any
 
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.files import car_names
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.files import car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from tests.orchestrator.parked_cars import GEOMETRIC, lacking, park, parking_scenarios
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -8,11 +8,12 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
 from orchestrator.session.foreign import ImportedFmus
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.testing.catalogue.entries import (
     ROOM,
     STEP_TESTS,
@@ -27,7 +28,6 @@ from orchestrator.testing.catalogue.verdicts import ClauseRun, ClauseVerdict, co
 from orchestrator.testing.suite import suite
 from orchestrator.testing.suite.junit import Case
 from orchestrator.testing.suite.suite import SuiteConfig
-from orchestrator.text.errors import BAD_INPUT, BadInput
 from tests.docs.scripts import DOCS, script
 
 EVERYTHING = verdicts_of(select_standards(["catalogue"]))

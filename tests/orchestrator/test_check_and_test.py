@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.foreign import ImportedFmus
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.testing.suite.junit import Case, Suite, write_junit
 from orchestrator.testing.suite.suite import SuiteConfig, run_test, select_scenarios
 

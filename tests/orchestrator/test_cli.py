@@ -17,8 +17,8 @@ import pytest
 from orchestrator import commands
 from orchestrator.cli import main
 from orchestrator.commands import COMMANDS
-from orchestrator.log.read_log import read_log
-from orchestrator.text.console import Meter, working
+from orchestrator.inputs.text.console import Meter, working
+from orchestrator.presentation.log.read_log import read_log
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 PNG = b"\x89PNG\r\n"
@@ -160,8 +160,8 @@ def test_no_colours_in_a_pipe(tmp_path: Path) -> None:
 def test_an_instance_that_fails_aborts_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.cosim.model_instance import ModelInstance
-    from orchestrator.text.errors import RunError
+    from orchestrator.inputs.text.errors import RunError
+    from orchestrator.simulation.cosim.model_instance import ModelInstance
 
     def step(self: ModelInstance, t_ns: int, dt_ns: int) -> None:
         if t_ns >= 500_000_000:
@@ -178,8 +178,8 @@ def test_an_instance_that_fails_aborts_and_says_so(
 def test_an_instance_that_does_not_start_aborts_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.cosim.model_instance import ModelInstance
-    from orchestrator.text.errors import RunError
+    from orchestrator.inputs.text.errors import RunError
+    from orchestrator.simulation.cosim.model_instance import ModelInstance
 
     def initialize(self: ModelInstance, stop_ns: int) -> None:
         raise RunError(f"{self.name} refuses to initialize")
@@ -209,7 +209,7 @@ def test_an_interrupt_while_a_command_is_imported_is_one_line(
     def interrupted(name: str) -> None:
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("orchestrator.text.command_parser.importlib.import_module", interrupted)
+    monkeypatch.setattr("orchestrator.inputs.text.command_parser.importlib.import_module", interrupted)
     assert main(["run", DEMO]) == 130
     assert capsys.readouterr().err == "apa: interrupted\n"
 
@@ -228,7 +228,7 @@ def test_quiet_prints_nothing_but_errors_and_json(tmp_path: Path, capsys: pytest
 def test_something_long_says_so_where_there_is_no_terminal(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("orchestrator.text.console.PERIOD", 0.01)
+    monkeypatch.setattr("orchestrator.inputs.text.console.PERIOD", 0.01)
     with Meter("my study", 300, "runs") as meter:
         time.sleep(0.02)
         meter.at(200, "9/s")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrator.verdict.comfort import dry_steering_count, peak_jerk
+from orchestrator.evaluation.verdict.comfort import dry_steering_count, peak_jerk
 
 STEPS = [0.005, 0.01, 0.05]
 

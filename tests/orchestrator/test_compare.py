@@ -12,11 +12,11 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from modelkit.vocabulary import Gear
 from orchestrator.cli import main
-from orchestrator.comparison.compare import compare
-from orchestrator.comparison.tolerance import Tolerance, Tolerances, read_tolerances
-from orchestrator.comparison.tube import Trace, distance
-from orchestrator.cosim.recording import Recording
-from orchestrator.text.errors import BadInput
+from orchestrator.evaluation.comparison.compare import compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances, read_tolerances
+from orchestrator.evaluation.comparison.tube import Trace, distance
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.recording import Recording
 
 T = np.linspace(0.0, 10.0, 1001)
 FLOAT = Variable("x", float, Signal("m", "a length"), 0.0)

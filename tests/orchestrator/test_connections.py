@@ -4,10 +4,10 @@ import pytest
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.cosim.connections import connect
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.connections import connect
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
+from orchestrator.simulation.cosim.model_instance import ModelInstance
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 

@@ -15,19 +15,19 @@ from modelkit.car import Car
 from modelkit.geometry import Box, boxes_depth
 from modelkit.vocabulary import Pose
 from orchestrator.cli import main
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import REQUIREMENT_SETS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.contact import clearance_parts, contact_facts
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.evaluation.verdict.standing import beyond_ends, outline_margin
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import REQUIREMENT_SETS
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.run import run_step_test
 from orchestrator.testing.steptest.step_test import load_step_test
 from orchestrator.testing.suite.junit import cases_of
-from orchestrator.verdict.contact import clearance_parts, contact_facts
-from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.polygons import polygon_clearances
-from orchestrator.verdict.standing import beyond_ends, outline_margin
-from orchestrator.verdict.summary import summarize
 from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 
 BOX = "{x: -4, y: -1.5, length: 1, width: 1}"

@@ -19,7 +19,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="signals are those of POSI
 HANGS = """
 import time
 from fmus.files import new_folder
-from orchestrator.text.ends import interrupt_within_limit
+from orchestrator.inputs.text.ends import interrupt_within_limit
 with interrupt_within_limit():
     print(new_folder("x"), flush=True)
     {hang}
@@ -100,7 +100,7 @@ def test_an_interrupt_that_a_library_makes_another_error_of_is_one(
 
 LEAVES_EXEC = """
 import os, signal, sys, time
-import orchestrator.commands.list as command, orchestrator.text.failures
+import orchestrator.commands.list as command, orchestrator.inputs.text.failures
 from orchestrator.cli import _complain, main
 _complain("all is imported, nothing more is made by exec")
 command.run = lambda _: exec("os.kill(os.getpid(), signal.SIGINT); time.sleep(5)")

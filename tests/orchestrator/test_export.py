@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from orchestrator import export
 from orchestrator.cli import main
 from orchestrator.commands.export import FORMATS
-from orchestrator.log.read_log import read_log
-from orchestrator.text.patterns import matching
+from orchestrator.inputs.text.patterns import matching
+from orchestrator.presentation import export
+from orchestrator.presentation.log.read_log import read_log
 
 
 @pytest.fixture(scope="module")

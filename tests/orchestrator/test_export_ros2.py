@@ -10,9 +10,9 @@ import pytest
 from mcap.reader import make_reader
 
 from orchestrator.cli import main
-from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import read_log
-from orchestrator.verdict.geometry import sample_path
+from orchestrator.evaluation.verdict.geometry import sample_path
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.simulation.cosim.recording import Recording
 
 rosbags = pytest.importorskip("rosbags.highlevel", reason="the package rosbags is not installed")
 FLOATS = ("speed", "measured_speed", "steering_wheel_angle", "front_wheel_angle")

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.faults import manipulators
-from orchestrator.cosim.fmu_instance import FmuInstance
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.scenario.fault import Fault
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.faults import manipulators
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.cosim.recording import Recorder, Recording
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000

@@ -10,15 +10,15 @@ from matplotlib.image import imread
 from matplotlib.transforms import Bbox
 
 from fmus.children import LIVING
-from orchestrator.drawing.beside import PictureBeside
-from orchestrator.drawing.figure import overview, picture
-from orchestrator.drawing.panels import PANELS, Panel, PanelCurve
-from orchestrator.drawing.seen import overview_of
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.frame import in_frame
+from orchestrator.evaluation.verdict.geometry import CarOutline, place, sample_path
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.drawing.beside import PictureBeside
+from orchestrator.presentation.drawing.figure import overview, picture
+from orchestrator.presentation.drawing.panels import PANELS, Panel, PanelCurve
+from orchestrator.presentation.drawing.seen import overview_of
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.frame import in_frame
-from orchestrator.verdict.geometry import CarOutline, place, sample_path
-from orchestrator.verdict.summary import summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

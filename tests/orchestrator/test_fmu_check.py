@@ -9,7 +9,7 @@ import pytest
 
 from fmus.python.fmu import build
 from orchestrator.cli import main
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 from tests.orchestrator import bad_fmus, c_fmus, foreign_fmus
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from tests.orchestrator import foreign_fmus
 
 KINDS = ["python", "native"]

@@ -8,8 +8,8 @@ from two_arcs import MODEL
 
 from fmus.python.fmu import build
 from orchestrator.cli import main
-from orchestrator.log.read_log import read_log
-from orchestrator.report.still import still_of
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.report.still import still_of
 
 
 @pytest.fixture(scope="module")

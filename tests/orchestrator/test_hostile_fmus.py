@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.model_description import read_description
-from orchestrator.foreign import worker
-from orchestrator.foreign.remote_instance import answer_of
-from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
-from orchestrator.log.messages import read_messages
-from orchestrator.system.signal_matching import _places_to_compare
-from orchestrator.text.console import console, printable_streams
-from orchestrator.text.errors import BadInput
-from orchestrator.text.printable import CONTROL
+from orchestrator.inputs.text.console import console, printable_streams
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.printable import CONTROL
+from orchestrator.presentation.log.messages import read_messages
+from orchestrator.simulation.cosim.model_description import read_description
+from orchestrator.simulation.imported import worker
+from orchestrator.simulation.imported.remote_instance import answer_of
+from orchestrator.simulation.imported.sandbox import PROGRAM, sandbox_program
+from orchestrator.simulation.system.signal_matching import _places_to_compare
 from tests.orchestrator import bad_fmus
 from tests.orchestrator.c_fmus import THEIR, c_fmu
 from tests.orchestrator.test_bad_fmus import scenario
@@ -106,7 +106,7 @@ def test_what_is_no_answer_of_a_worker_is_not_taken_for_one(answer: bytes) -> No
 def test_a_flood_of_messages_ends_with_a_line_that_says_so(tmp_path: Path) -> None:
     path = scenario(tmp_path, bad_fmus.behaving(tmp_path, "step-flood"))
     assert main(["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "-q", "--no-page"]) in (0, 1)
-    from orchestrator.log.line import MAX_LINES
+    from orchestrator.presentation.log.line import MAX_LINES
 
     lines = [line for line in read_messages(tmp_path / "out" / "run.mcap") if line.name == "bad"]
     assert len(lines) <= worker.MAX_MESSAGES <= MAX_LINES

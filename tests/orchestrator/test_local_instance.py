@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fmus.build import build_all
-from orchestrator.cosim.local_instance import LocalInstance
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.text.errors import BadInput, RunError
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput, RunError
+from orchestrator.simulation.cosim.local_instance import LocalInstance
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

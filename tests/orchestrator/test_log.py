@@ -12,16 +12,16 @@ from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 
-from orchestrator.cosim.algorithm import Termination
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.cosim.recording import Recording
-from orchestrator.log.mcap_file import CHUNK_SIZE, McapFile
-from orchestrator.log.mcap_log import McapLog
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, McapFile
+from orchestrator.presentation.log.mcap_log import McapLog
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.session import Messages, run_instances, run_scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.simulation.cosim.algorithm import Termination
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.cosim.recording import Recording
 from tests.orchestrator.toy_models import BRAIN, PLANT, Mode
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))

@@ -12,22 +12,22 @@ import pytest
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cli import main
-from orchestrator.comparison import traces
-from orchestrator.comparison.compare import compare
-from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.cosim import signal_blocks
-from orchestrator.cosim.recording import Recording, StoredRecording, recording_of
-from orchestrator.cosim.signal_blocks import SignalBlocks
-from orchestrator.drawing.decimation import decimate, deviation
-from orchestrator.log import mcap_log
-from orchestrator.log.mcap_file import McapFile
-from orchestrator.log.mcap_log import add_channel
-from orchestrator.log.protobuf_rows import Encoder
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.comparison import traces
+from orchestrator.evaluation.comparison.compare import compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.drawing.decimation import decimate, deviation
+from orchestrator.presentation.log import mcap_log
+from orchestrator.presentation.log.mcap_file import McapFile
+from orchestrator.presentation.log.mcap_log import add_channel
+from orchestrator.presentation.log.protobuf_rows import Encoder
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim import signal_blocks
+from orchestrator.simulation.cosim.recording import Recording, StoredRecording, recording_of
+from orchestrator.simulation.cosim.signal_blocks import SignalBlocks
 
 GROWTH_MB = 16.0
 """Memory that a log of four times the length may take besides: caches, the allocator's leftovers, the log's index."""
@@ -41,9 +41,9 @@ code = main(sys.argv[1:])
 print(json.dumps([code, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]))
 """
 SMALL = """
-from orchestrator.cosim import signal_blocks
-from orchestrator.comparison import traces
-from orchestrator.drawing import decimation
+from orchestrator.simulation.cosim import signal_blocks
+from orchestrator.evaluation.comparison import traces
+from orchestrator.presentation.drawing import decimation
 signal_blocks.MEMORY_BYTES, signal_blocks.BLOCK_BYTES, traces.SPAN_ROWS = 4 << 20, 1 << 20, 1 << 14
 decimation.MAX_VALUES = 100_000
 """
@@ -188,8 +188,8 @@ def test_an_mdf_file_of_a_long_run_is_the_same(
 def test_a_page_keeps_changes_and_extremes_of_a_long_run(
     parked: tuple[Recording, Path], stored: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("orchestrator.drawing.decimation.MAX_VALUES", 60_000)
-    monkeypatch.setattr("orchestrator.drawing.decimation.MAX_STEP_ROWS", 300)
+    monkeypatch.setattr("orchestrator.presentation.drawing.decimation.MAX_VALUES", 60_000)
+    monkeypatch.setattr("orchestrator.presentation.drawing.decimation.MAX_STEP_ROWS", 300)
     run, shown = parked[0], decimate(stored, [3.337])
     assert shown.count < run.count / 2
     assert round(3.34, 9) in shown.t.round(9).tolist()

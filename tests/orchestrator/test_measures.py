@@ -8,13 +8,13 @@ import pytest
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.requirements import Condition
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.conditions import CONDITIONS, share
-from orchestrator.verdict.measures import Instants, Measure, measure_recording
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, POSE, facts_of, numbers
-from orchestrator.verdict.truth import GroundTruth, truth_of
+from orchestrator.evaluation.verdict.conditions import CONDITIONS, share
+from orchestrator.evaluation.verdict.measures import Instants, Measure, measure_recording
+from orchestrator.evaluation.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, POSE, facts_of, numbers
+from orchestrator.evaluation.verdict.truth import GroundTruth, truth_of
+from orchestrator.inputs.scenario.requirements import Condition
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.recording import Recording
 
 VALUES = np.array([1.0, -3.0, 2.0])
 

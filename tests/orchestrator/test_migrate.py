@@ -8,13 +8,13 @@ import yaml
 from apa_cosim.testing import ClosedLoopRun, OpenLoopRun
 from modelkit.variables import variables
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.numbers import NUMBERS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, current_name, new_name
 from orchestrator.studies.sweep.study.study_file import load_study
-from orchestrator.text.errors import BadInput
-from orchestrator.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, current_name, new_name
-from orchestrator.verdict.numbers import NUMBERS
 
 OLD = """\
 # a comment of mine

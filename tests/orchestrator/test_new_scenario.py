@@ -8,9 +8,9 @@ import yaml
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_instance import Ports
-from orchestrator.scenario.models import MODELS
-from orchestrator.system.signal_matching import Signals, match_signals
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.simulation.cosim.fmu_instance import Ports
+from orchestrator.simulation.system.signal_matching import Signals, match_signals
 from tests.orchestrator import c_fmus, foreign_fmus
 
 WRITTEN_ELSEWHERE = [

@@ -9,13 +9,13 @@ import pytest
 
 from apa_cosim import sweep as sweep_table
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.inputs.text.errors import NotRunError, RunError
+from orchestrator.inputs.text.failures import exit_code_and_message
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.parking.world import ends
 from orchestrator.studies.sweep import batch
 from orchestrator.studies.sweep.engine import all_rows, rows_or_reason
-from orchestrator.text.errors import NotRunError, RunError
-from orchestrator.text.failures import exit_code_and_message
 
 STUDY = """
 name: few
@@ -147,7 +147,9 @@ def test_a_test_calls_it_not_run(tmp_path: Path, monkeypatch: Any, capsys: Any, 
 
 
 def test_a_run_leaves_no_log_if_nothing_has_run(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
-    monkeypatch.setattr("orchestrator.cosim.model_instance.ModelInstance.initialize", Failing(None, MemoryError(), {1}))
+    monkeypatch.setattr(
+        "orchestrator.simulation.cosim.model_instance.ModelInstance.initialize", Failing(None, MemoryError(), {1})
+    )
     assert main(["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(tmp_path)]) == 2
     assert "more memory" in capsys.readouterr().err
     assert not list(tmp_path.glob("*.mcap"))
@@ -156,7 +158,9 @@ def test_a_run_leaves_no_log_if_nothing_has_run(tmp_path: Path, monkeypatch: Any
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 def test_an_fmu_that_cannot_be_unpacked_is_not_run(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
-    monkeypatch.setattr("orchestrator.cosim.local_instance.extract", Failing(None, ValueError("no zip"), {1}))
+    monkeypatch.setattr(
+        "orchestrator.simulation.cosim.local_instance.extract", Failing(None, ValueError("no zip"), {1})
+    )
     assert main(["run", "guo2015-case4", "--fmus", "native", "--no-page", "--json", "--out", str(tmp_path)]) == 2
     assert "cannot be loaded here: no zip" in capsys.readouterr().err
 

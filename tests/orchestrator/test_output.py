@@ -38,7 +38,7 @@ def test_a_page_that_fails_leaves_verdict_and_exit_code(
     def broken(*_: object) -> None:
         raise KeyError("page")
 
-    monkeypatch.setattr("orchestrator.report.replay.write_replay", broken)
+    monkeypatch.setattr("orchestrator.presentation.report.replay.write_replay", broken)
     monkeypatch.setattr("platformdirs.user_log_path", lambda *_, **__: tmp_path / "errors")
     assert main([*SHORT_RUN, "--out", str(tmp_path)]) == 1
     text = capsys.readouterr()

@@ -3,8 +3,8 @@
 import pytest
 
 from controller_fmu.common.monitor import SLOW_DRIVING_SPEED, time_counted
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.pace import TIMED_SPEED
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.pace import TIMED_SPEED
 
 
 @pytest.mark.parametrize(

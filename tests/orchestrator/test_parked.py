@@ -15,21 +15,21 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.registry import ControllerOutput
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.geometry import CarOutline, place, slot_box
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.numbers import NUMBERS
+from orchestrator.evaluation.verdict.outcome import state_name
+from orchestrator.evaluation.verdict.standing import outline_margin
+from orchestrator.evaluation.verdict.summary import Final, Summary, summarize
+from orchestrator.evaluation.verdict.truth import join_truths, truth_of
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.studies.sweep.rows import measures_for, row_of
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge_rows
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import CarOutline, place, slot_box
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.numbers import NUMBERS
-from orchestrator.verdict.outcome import state_name
-from orchestrator.verdict.standing import outline_margin
-from orchestrator.verdict.summary import Final, Summary, summarize
-from orchestrator.verdict.truth import join_truths, truth_of
 
 CASE_4 = load_scenario("guo2015-case4")
 SLOT_ONLY = load_scenario("guo2015-case4", ["requirements=[]"])

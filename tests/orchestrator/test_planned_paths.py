@@ -6,9 +6,9 @@ import pytest
 from controller_fmu.registry import MODEL
 from modelkit.signal import Role
 from modelkit.variables import variables
-from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.seen import path_plans, path_points
-from orchestrator.verdict.geometry import key_points, sample_path
+from orchestrator.evaluation.verdict.geometry import key_points, sample_path
+from orchestrator.presentation.drawing.seen import path_plans, path_points
+from orchestrator.simulation.cosim.recording import Recording
 from tests.native_runs import native_recording
 
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.plausible import implausible, plausible
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.plausible import implausible, plausible
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.cost import cost_text
-from orchestrator.text.errors import BadInput
 
 
 def test_no_shipped_scenario_is_absurd() -> None:

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from orchestrator.log.read_log import read_log
-from orchestrator.log.recover import recover
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.log.recover import recover
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 NEVER_ENDING = [

@@ -10,13 +10,13 @@ import pytest
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.files import ROOM
-from orchestrator.scenario.requirements import Requirement, read_requirements
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.judge import NEVER, judge
-from orchestrator.verdict.numbers import facts_of
+from orchestrator.evaluation.verdict.judge import NEVER, judge
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.inputs.scenario.files import ROOM
+from orchestrator.inputs.scenario.requirements import Requirement, read_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.recording import Recording
 
 Phase = IntEnum("Phase", {"STANDBY": 0, "DRIVE": 1, "PARKED": 2})
 T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.log.read_log import read_log
-from orchestrator.report.found_runs import find_runs
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.report.found_runs import find_runs
 from orchestrator.session.provenance import git_commit
+from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.live.layout import layout_data
-from orchestrator.verdict.logged import read_logged_run
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 SHORT = ["run", DEMO, "--fmus", "none", "--no-page", "--set", "stop_time=0.2"]

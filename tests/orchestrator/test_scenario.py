@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.scenario.files import car_names
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import number
+from orchestrator.inputs.scenario.files import car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.quantities import number
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

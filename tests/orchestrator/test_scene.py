@@ -2,9 +2,9 @@
 
 import pytest
 
-from orchestrator.drawing.scene import Surroundings, still_life
-from orchestrator.scenario.scenario import Slot
-from orchestrator.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box
+from orchestrator.evaluation.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box
+from orchestrator.inputs.scenario.scenario import Slot
+from orchestrator.presentation.drawing.scene import Surroundings, still_life
 
 SECOND = 1_000_000_000
 CAR = CarOutline.of({})

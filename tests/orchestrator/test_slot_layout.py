@@ -8,11 +8,11 @@ import pytest
 from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.obstacle_map import box_corners, static_obstacles
-from orchestrator.scenario.plausible import implausible
-from orchestrator.scenario.slot_layout import SlotLayout, scene_of
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.obstacle_map import box_corners, static_obstacles
+from orchestrator.inputs.scenario.plausible import implausible
+from orchestrator.inputs.scenario.slot_layout import SlotLayout, scene_of
+from orchestrator.inputs.text.errors import BadInput
 
 
 def layout(**given: Any) -> dict[str, Any]:

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.foreign import load_bound_scenario
 from orchestrator.session.session import NOBODY, Messages, make_instances
-from orchestrator.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.system.remarks import remarks
-from orchestrator.text.errors import BadInput
+from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
+from orchestrator.simulation.system.remarks import remarks
 from tests.orchestrator import c_fmus
 from tests.orchestrator.foreign_fmus import changed
 

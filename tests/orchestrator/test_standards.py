@@ -7,10 +7,10 @@ from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from modelkit.car import Car
 from modelkit.variables import Variable, variables, with_values
-from orchestrator.scenario.files import library_names
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.files import library_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
 
 LIMITS = {item.id: item.limit for item in library_requirements("gbt41630")}
 OF_STANDARD = [item for item in variables(MODEL.params) if item.signal.source == "GB/T 41630"]

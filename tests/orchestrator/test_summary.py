@@ -12,10 +12,10 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerOutput
 from modelkit.variables import variables
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Target
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Target
+from orchestrator.simulation.cosim.recording import Recording
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 TARGET = Target(x=10.0, y=-5.0, heading=math.pi / 2)

@@ -15,17 +15,17 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from orchestrator.cli import main
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.fmu_instance import FmuInstance, Scale
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.wiring.system_text import Origin, PoseFrame, SystemText, Term, terms
-from orchestrator.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.system.conversions import into, out_of
-from orchestrator.system.remarks import loops, remarks
-from orchestrator.system.units import UnfitUnitsError, conversion
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.wiring.system_text import Origin, PoseFrame, SystemText, Term, terms
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.fmu_instance import FmuInstance, Scale
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
+from orchestrator.simulation.system.conversions import into, out_of
+from orchestrator.simulation.system.remarks import loops, remarks
+from orchestrator.simulation.system.units import UnfitUnitsError, conversion
 from tests.orchestrator import bad_fmus, c_fmus
 from tests.orchestrator.toy_models import BRAIN, PLANT
 

@@ -8,7 +8,7 @@ import pytest
 from pythonfmu.builder import FmuBuilder
 
 from orchestrator.cli import main
-from orchestrator.log.read_log import read_log
+from orchestrator.presentation.log.read_log import read_log
 from tests.orchestrator.c_fmus import THEIR, c_fmu
 
 FMI2 = """<?xml version="1.0"?>

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.trust import VARIABLE, is_trusted, trusting
 from orchestrator.studies.sweep.repeat import NEEDED, write_scenario
-from orchestrator.text.errors import BadInput
 
 LAW = """
 from pathlib import Path
@@ -72,7 +72,7 @@ def test_what_the_command_line_names_needs_no_question(received: Path) -> None:
 def test_a_table_asks_before_its_code_is_imported(received: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The table says of which file its scenario's controller is, by an absolute path."""
     monkeypatch.setenv(VARIABLE, "all")
-    from orchestrator.scenario.load_scenario import load_scenario
+    from orchestrator.inputs.scenario.load_scenario import load_scenario
 
     scenario = load_scenario(str(received / "got.yaml"), [])
     monkeypatch.delenv(VARIABLE)

@@ -8,17 +8,17 @@ from matplotlib.figure import Figure
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from orchestrator.drawing.figure import _plan
-from orchestrator.drawing.seen import overview_of
-from orchestrator.log.read_log import read_log
-from orchestrator.report.still import still_of
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Target
+from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Target
+from orchestrator.presentation.drawing.figure import _plan
+from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.report.still import still_of
 from orchestrator.session.foreign import bind_parameters
 from orchestrator.session.session import SimulationResult, run_scenario
 from orchestrator.testing.suite.collection import picture
-from orchestrator.verdict.logged import read_logged_run
-from orchestrator.verdict.summary import summarize
 
 TRUE = (-7.608, -3.056, 0.0)
 TOLD = load_scenario("guo2015-case4", ["controller.target.y=-3.2", "stop_time=2", "expected_outcome=not_parked"])

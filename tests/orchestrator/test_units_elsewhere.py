@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.model_description import read_description
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.plausible import implausible
-from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.plausible import implausible
+from orchestrator.inputs.scenario.tpcap import read_tpcap
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.yaml_file import read_mapping
 from orchestrator.session.foreign import load_bound_scenario
 from orchestrator.session.session import NOBODY, Messages, make_instances
-from orchestrator.system.assemble import elaborate
-from orchestrator.text.errors import BadInput
-from orchestrator.text.yaml_file import read_mapping
+from orchestrator.simulation.cosim.model_description import read_description
+from orchestrator.simulation.system.assemble import elaborate
 
 HEAD = """<?xml version="1.0"?>
 <fmiModelDescription fmiVersion="2.0" modelName="M" guid="g"><CoSimulation modelIdentifier="m"/>"""

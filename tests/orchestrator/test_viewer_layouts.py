@@ -7,8 +7,8 @@ import pytest
 from mcap.reader import make_reader
 
 from orchestrator.cli import main
-from orchestrator.log.read_log import read_log
-from orchestrator.log.viewer_layouts import LAYOUT_FOLDER, TITLES, layout
+from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.log.viewer_layouts import LAYOUT_FOLDER, TITLES, layout
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.studies.papers.drive import drive
 from orchestrator.studies.papers.result import Drive, Driven
 

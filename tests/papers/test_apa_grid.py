@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.parking.cases import CARS, cases, parameters
 from orchestrator.studies.parking.parkings import GridRun, parkings
 from orchestrator.studies.parking.study import study, study_of, totals

@@ -8,8 +8,8 @@ import pytest
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import MAX_PATH_HEADING, PathStatus, plan, through
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
 from orchestrator.studies.bakeoff.claim import study as claim
 from orchestrator.studies.bakeoff.drives import Drive, drives

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from orchestrator.cli import main
-from orchestrator.drawing.run_figure import style_context
+from orchestrator.presentation.drawing.run_figure import style_context
 from orchestrator.studies.papers.drive import drive
 from orchestrator.studies.papers.figure_files import write_figures
 from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure

@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.guo2015.params import GuoParams
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.papers.guo2015 import case_rows, reproduce
 from orchestrator.studies.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
 from orchestrator.studies.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
-from orchestrator.verdict.summary import summarize
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.simulation.cosim.fmu_files import default_kind, fmu_files
 from orchestrator.studies.papers.drive import drive
 from orchestrator.studies.papers.result import Drive
 

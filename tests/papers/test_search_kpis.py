@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.parking.search_kpis import (
     BESIDE,
     FALSE,

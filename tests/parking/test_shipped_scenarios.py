@@ -11,11 +11,11 @@ import pytest
 
 from controller_fmu.parking.params import ParkingParams, ParkingSystem
 from modelkit.variables import variables
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import library_requirements
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.drive import drive
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.summary import summarize
 
 SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))

@@ -3,14 +3,14 @@ from typing import Any
 
 import pytest
 
-from orchestrator.comparison.compare import compare
-from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.log.line import Line
-from orchestrator.report.overlay import write_overlay
-from orchestrator.report.replay import replay_page
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.comparison.compare import compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.log.line import Line
+from orchestrator.presentation.report.overlay import write_overlay
+from orchestrator.presentation.report.replay import replay_page
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.summary import summarize
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 

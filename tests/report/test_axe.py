@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.studies.live.page import live_page
 from orchestrator.testing.catalogue.entries import select_standards
 from orchestrator.testing.catalogue.show import write_catalogue

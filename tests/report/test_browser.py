@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from matplotlib.image import imread
 
-from orchestrator.report.replay import replay_page
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.verdict.summary import summarize
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.report.replay import replay_page
 from tests.native_runs import native_recording
 
 CLOCK = "window.replay.t"

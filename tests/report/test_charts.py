@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from orchestrator.drawing.chart_svg import chart_svg
-from orchestrator.report.charts import charts_data
+from orchestrator.presentation.drawing.chart_svg import chart_svg
+from orchestrator.presentation.report.charts import charts_data
 
 LETTER = 6.0
 """Mean width of a letter at 12 px."""

@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from orchestrator.comparison.compare import compare
-from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.report.overlay import write_overlay
-from orchestrator.report.page import page
-from orchestrator.report.payload import Arrays
-from orchestrator.report.replay import LARGEST_PAGE, replay_page
-from orchestrator.report.thinning import RANGE_TOLERANCE, thin
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.comparison.compare import compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.report.overlay import write_overlay
+from orchestrator.presentation.report.page import page
+from orchestrator.presentation.report.payload import Arrays
+from orchestrator.presentation.report.replay import LARGEST_PAGE, replay_page
+from orchestrator.presentation.report.thinning import RANGE_TOLERANCE, thin
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.summary import summarize
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 

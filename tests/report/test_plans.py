@@ -9,10 +9,10 @@ import pytest
 from controller_fmu.apa.slot import Kind, Side
 from controller_fmu.apa.ways.move import Move, Piece, end_of
 from modelkit.vocabulary import Pose
-from orchestrator.report.payload import Arrays
-from orchestrator.report.plans import MOST_PLANS, plans_of, slot_corners, target_pose
-from orchestrator.report.run_data import ribbons_of
-from orchestrator.verdict.geometry import sample_path
+from orchestrator.evaluation.verdict.geometry import sample_path
+from orchestrator.presentation.report.payload import Arrays
+from orchestrator.presentation.report.plans import MOST_PLANS, plans_of, slot_corners, target_pose
+from orchestrator.presentation.report.run_data import ribbons_of
 from tests.native_runs import native_recording
 
 

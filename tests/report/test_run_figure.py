@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.drawing.run_figure import run_figure, width_in_cm
+from orchestrator.presentation.drawing.run_figure import run_figure, width_in_cm
 from orchestrator.studies.papers.drive import drive
 
 

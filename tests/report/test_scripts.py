@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from orchestrator.report import page as replay
+from orchestrator.presentation.report import page as replay
 from orchestrator.studies.live import page as live
 
 TSC = Path(sys.prefix) / "scripts" / "node_modules" / "typescript" / "lib" / "tsc.js"

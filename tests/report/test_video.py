@@ -11,10 +11,10 @@ import pytest
 from PIL.GifImagePlugin import GifImageFile
 
 from orchestrator.cli import main
-from orchestrator.drawing.seen import overview_of
-from orchestrator.drawing.video import VideoOptions, write_video
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.drawing.video import VideoOptions, write_video
 
 WIDTH = 320
 FFMPEG = """#!{python}

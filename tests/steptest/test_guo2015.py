@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.simulation.cosim.fmu_files import can_compile
 
 TEST = Path(__file__).parent / "test_guo2015_manoeuvre.yaml"
 

@@ -11,13 +11,13 @@ import yaml
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cli import main
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.session import run_scenario
 from orchestrator.testing.steptest.drive import drive
 from orchestrator.testing.steptest.step_test import load_step_test
 from orchestrator.testing.steptest.stimuli import StimulatedInput, stimulus
-from orchestrator.text.errors import BadInput
 from vehicle_fmu.interface import VehicleInput
 
 T = np.array([0.0, 1.0, 2.0, 3.0])

@@ -17,15 +17,15 @@ import pytest
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
-from orchestrator.stream.gate import is_welcome
-from orchestrator.stream.pace import RealTimeClock
-from orchestrator.stream.realtime import Realtime
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.summary import summarize
+from orchestrator.session.stream.gate import is_welcome
+from orchestrator.session.stream.pace import RealTimeClock
+from orchestrator.session.stream.realtime import Realtime
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 
 pytest.importorskip("foxglove")
 TOKEN = "apa.token"

@@ -12,17 +12,17 @@ import pytest
 
 from fmus.compiled_batch import RecordedSignal, compile_rows
 from modelkit.signal import Signal
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.scenario.models import MODELS
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.sweep.batch import run_batch, run_recorded
 from orchestrator.studies.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to, truths
 from orchestrator.studies.sweep.rows import row_of, why_not_compiled
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.summary import summarize
 
 LIMITS = [
     {"id": "end heading", "signal": "final.heading_error", "max_abs": "3 deg", "source": "test"},

@@ -5,10 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import Requirement, Window, library_requirements
-from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import Requirement, Window, library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Target
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.sweep.columns import WITHIN, columns_of
 from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.in_memory import columns_in_memory
@@ -19,9 +22,6 @@ from orchestrator.studies.sweep.study.read_study import read_study
 from orchestrator.studies.sweep.study.study import DerivedParameter, Study
 from orchestrator.studies.sweep.sweep import Options, sweep
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.numbers import Metric
 
 CONTENT = {"name": "cases", "title": "", "description": "", "map": None}
 compiles = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")

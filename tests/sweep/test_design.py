@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.study.read_study import read_study
 from orchestrator.studies.sweep.study.study_file import StudyFile
-from orchestrator.text.errors import BadInput
 
 SPEED = "vehicle.driver.profile[1].speed"
 

@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.evaluation.verdict.limit_text import requirement_text
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.readable import readable
 from orchestrator.studies.sweep.job import chunk_scenario
 from orchestrator.studies.sweep.page.explorer import explorer_data
 from orchestrator.studies.sweep.page.figures import SCALE, colour, histogram
@@ -27,9 +30,6 @@ from orchestrator.studies.sweep.page.statistics import (
     worst,
 )
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.readable import readable
-from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import requirement_text
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 STUDY = """

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.errors import BadInput
 
 STUDY = """
 name: trial

@@ -8,12 +8,12 @@ import pytest
 
 from apa_cosim import load_scenario, read_table, run
 from orchestrator.cli import main
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.batch import run_recorded
 from orchestrator.studies.sweep.columns import fill_columns
 from orchestrator.studies.sweep.job import Chunk, make_job
 from orchestrator.studies.sweep.study.read_study import read_study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.errors import BadInput
 from tests.orchestrator import c_fmus
 
 STUDY = """scenario: their.yaml

@@ -4,7 +4,7 @@ import pytest
 
 from fmus.native.libraries import python_front
 from fmus.python import fmu as python_fmu
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 from tests.fmi.built import native_fmu_of
 
 BUILD = {

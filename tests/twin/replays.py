@@ -8,7 +8,7 @@ import numpy as np
 from fmus.contents.arrays import fmi_arrays
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 from tests.fmi.raw3 import OK, Library3
 
 FUNCTIONS = {

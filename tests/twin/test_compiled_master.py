@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from orchestrator.cosim import compiled_master
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.compiled_master import CompiledMaster
-from orchestrator.cosim.local_instance import LocalInstance
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import RunError
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import RunError
+from orchestrator.simulation.cosim import compiled_master
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.compiled_master import CompiledMaster
+from orchestrator.simulation.cosim.local_instance import LocalInstance
 from tests.twin.test_same_bits import differing
 
 NAME = "guo2015-case4-105"

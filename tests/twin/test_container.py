@@ -19,12 +19,12 @@ from modelkit.assembly import assemble
 from modelkit.variables import flatten, variables, with_values
 from modelkit.vocabulary import Gear
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.export.system_of import one_model
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.export.system_of import one_model
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from tests.fmi.built import native_fmu_of
 from tests.fmi.host import OK, Host
 from tests.twin.replays import CLibrary, Fmi3

@@ -21,11 +21,11 @@ from libcosimpy.CosimObserver import CosimObserver
 from fmus.contents.xml_file import as_text
 from fmus.systems.ssp import write_ssp
 from orchestrator.cli import main
-from orchestrator.export.system_of import parts_of, system_of
-from orchestrator.log.read_log import read_log
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.export.system_of import parts_of, system_of
+from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
 from tests.twin.toolbox_container import write_container
 
 POSE = ("pose.x", "pose.y", "pose.heading")

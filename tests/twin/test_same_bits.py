@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import MODELS
+from orchestrator.evaluation.verdict.measures import Measure, measure_recording
+from orchestrator.evaluation.verdict.numbers import MEASURES
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.sweep.batch import run_batch
 from orchestrator.studies.sweep.job import chunks, make_job
 from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.verdict.measures import Measure, measure_recording
-from orchestrator.verdict.numbers import MEASURES
 from tests.twin.replays import CLibrary, Fmi3, played
 
 LIKE_OTHERS = (

@@ -19,8 +19,8 @@ from fmus.native.libraries import load_model, memory_size
 from modelkit.store import columns_of, new_store
 from modelkit.variables import flatten, variables, with_values
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.benchmark.parkbench import read_parkbench
 from tests.benchmark.parkbench_scene import large_scene, scene, write
 from tests.planning.plan_model import Scene

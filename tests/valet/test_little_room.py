@@ -7,10 +7,10 @@ import pytest
 import yaml
 
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from tests.planning.scenes import CAR, least_clearance
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

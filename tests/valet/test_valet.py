@@ -23,9 +23,9 @@ from fmus.compiler import translate
 from modelkit.model import Model
 from modelkit.variables import variables
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.model_instance import ModelInstance
 from tests.compiler.c_model import CModel
 from tests.planning.plan_model import Scene
 from tests.valet.looks import look

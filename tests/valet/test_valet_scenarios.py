@@ -11,14 +11,14 @@ from shapely.geometry import MultiPoint
 from benchmarks.bench_valet import ERRORS
 from modelkit.vocabulary import Pose
 from orchestrator.cli import main
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.tpcap import read_tpcap
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.tpcap import read_tpcap
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.polygons import polygon_clearances
-from orchestrator.verdict.summary import summarize
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from tests.planning.scenes import CAR, least_clearance, tpcap_folder
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -25,10 +25,10 @@ from controller_fmu.valet.slot import stands_in_road, stands_out
 from modelkit.car import Car
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.obstacle_map import box_corners
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.obstacle_map import box_corners
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from tests.planning.plan_model import Scene
 from tests.valet.looks import look
 from vehicle_fmu.scene import Obstacle, SceneParams

@@ -14,7 +14,7 @@ from fmus.native.libraries import load_model, memory_size
 from fmus.python import fmu as python_fmu
 from modelkit.store import size_of
 from modelkit.variables import with_values
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from tests.fmi.built import native_fmu_of
 from tests.fmi.host import Host
 from tests.fmi.raw import OK, Library, state_pointer

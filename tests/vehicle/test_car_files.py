@@ -9,9 +9,9 @@ import yaml
 
 from modelkit.car import Car
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.scenario.files import car_names
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.files import car_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.text.errors import BadInput
 from tests.vehicle.cars import CARS, double_track_car, single_track_car
 from vehicle_fmu.interface import Body, VehicleParams
 from vehicle_fmu.usable import is_usable

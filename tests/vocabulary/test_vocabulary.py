@@ -24,10 +24,10 @@ def speed(x: float) -> float:
 
 
 def test_words_constants_and_participles_are_found(tmp_path: Path) -> None:
-    file = tmp_path / "orchestrator" / "text" / "thing.py"
+    file = tmp_path / "orchestrator" / "inputs" / "thing.py"
     file.parent.mkdir(parents=True)
     file.write_text(CODE)
-    found = list(findings(tmp_path, ["orchestrator/text/thing.py"]))
+    found = list(findings(tmp_path, ["orchestrator/inputs/thing.py"]))
     assert sorted((item.line, item.word) for item in found) == [
         (1, "askew"),
         (1, "told"),
@@ -37,7 +37,7 @@ def test_words_constants_and_participles_are_found(tmp_path: Path) -> None:
         (8, "moved"),
         (9, "NEAR"),
     ]
-    assert counts(found) == {"orchestrator/text": 7}
+    assert counts(found) == {"orchestrator/inputs": 7}
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-/* What a receiver sees instead of what was sent to it, between two exchanges: as orchestrator/cosim/faults.py has it,
+/* What a receiver sees instead of what was sent to it, between two exchanges: as orchestrator/simulation/cosim/faults.py has it,
  * to the same bits.
  */
 #ifndef FAULTS_H

@@ -1,4 +1,4 @@
-/* The exchange of orchestrator/cosim/algorithm.py as one call: read all outputs, copy them to the connected
+/* The exchange of orchestrator/simulation/cosim/algorithm.py as one call: read all outputs, copy them to the connected
  * inputs, write all inputs, step all. Drives FMUs through the pointers to their FMI 2.0 functions and knows
  * nothing else of them. Holds no lock and no static data.
  *

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.report.replay import write_replay
+from orchestrator.inputs.text.console import console, say, working
+from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.presentation.report.replay import write_replay
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene
 from orchestrator.studies.benchmark.optimal.reference import Optimum, find_optimum
-from orchestrator.text.console import console, say, working
-from orchestrator.text.errors import NOT_PARKED, PARKED
-from orchestrator.text.owned import lock_folder
 
 EXAMPLES = """examples:
   apa bench optimal valet-dead-end

@@ -6,15 +6,15 @@ import shlex
 from pathlib import Path
 
 from fmus.files import write_whole
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.inputs.text.console import Meter, console, say
+from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.simulation.cosim.interrupts import on_interrupt
 from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC
 from orchestrator.studies.benchmark.scenes import ROWS, SceneRow, rows_of, scenes_in
 from orchestrator.studies.benchmark.table import as_json, csv_text, figures_of, table_lines
-from orchestrator.text.console import Meter, console, say
-from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
-from orchestrator.text.owned import lock_folder
 
 EXAMPLES = """examples:
   apa bench parking                              the shipped scenarios of the valet

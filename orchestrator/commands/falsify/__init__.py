@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
 from orchestrator.commands.sweep import select_study
-from orchestrator.cosim.kinds import KINDS
-from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
-from orchestrator.text.owned import lock_folder
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.simulation.cosim.kinds import KINDS
 
 if TYPE_CHECKING:
     from orchestrator.studies.falsification.falsify import FalsificationResult

@@ -4,11 +4,11 @@ import argparse
 import json
 from pathlib import Path
 
-from orchestrator.foreign.limits import STEP_TIMEOUT
+from orchestrator.inputs.text.console import console
 from orchestrator.session.fmu_check import FmuReport, check_fmu
 from orchestrator.session.foreign import connect_advice
 from orchestrator.session.options import seconds
-from orchestrator.text.console import console
+from orchestrator.simulation.imported.limits import STEP_TIMEOUT
 
 EXAMPLES = """examples:
   apa fmu check their.fmu                                  as controller or vehicle, by its variables

@@ -10,8 +10,8 @@ from pathlib import Path
 from string import Template
 
 from fmus.files import write_whole
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.trust import trust_folder
-from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa new controller my_controller          a folder my_controller: law, scenario, tests, README
@@ -152,9 +152,9 @@ def _third_party(arguments: argparse.Namespace) -> dict[str, str]:
     """Return component -> FMU of those that were named; ``--fmu`` is placed by its variables."""
     files = {owner: getattr(arguments, owner) for owner in PACKAGES if getattr(arguments, owner, None)}
     if arguments.fmu:
-        from orchestrator.cosim.model_description import read_description
         from orchestrator.session.fmu_check import likely_place
         from orchestrator.session.foreign import fmu_of
+        from orchestrator.simulation.cosim.model_description import read_description
 
         path = fmu_of(arguments.fmu)
         place = likely_place(path, read_description(path), "")
@@ -195,7 +195,7 @@ def _write_system(file: Path, name: str, base: str, files: Mapping[str, str]) ->
 
 def _study(arguments: argparse.Namespace) -> int:
     """Write a study of a scenario's start pose."""
-    from orchestrator.scenario.load_scenario import load_scenario
+    from orchestrator.inputs.scenario.load_scenario import load_scenario
 
     name = _file_name(arguments.name)
     file = _new_file(arguments.out / f"{name}.yaml")

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.fmu_instance import Ports
-from orchestrator.cosim.model_description import ports_of, read_description
-from orchestrator.foreign.archive import check_archive
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.foreign import fmu_of
-from orchestrator.system.remarks import SPARE
-from orchestrator.system.signal_matching import Signals, Suggestion, match_signals, words
+from orchestrator.simulation.cosim.fmu_instance import Ports
+from orchestrator.simulation.cosim.model_description import ports_of, read_description
+from orchestrator.simulation.imported.archive import check_archive
+from orchestrator.simulation.system.remarks import SPARE
+from orchestrator.simulation.system.signal_matching import Signals, Suggestion, match_signals, words
 
 PLAIN = re.compile(r"-?[A-Za-z_][\w.()/ \[\]-]*")
 """A text that YAML takes as it is."""

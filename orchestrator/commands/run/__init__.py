@@ -3,9 +3,9 @@
 import argparse
 from contextlib import nullcontext
 
-from orchestrator.cosim.kinds import KINDS, default_kind
-from orchestrator.drawing.beside import PictureBeside
+from orchestrator.presentation.drawing.beside import PictureBeside
 from orchestrator.session.options import add_foreign_arguments, add_output_arguments
+from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 
 DEFAULT_PORT = 8765
 """Where Foxglove looks for a stream if nothing else is said."""

@@ -6,20 +6,28 @@ from typing import NamedTuple
 
 from fmus.files import write_whole
 from orchestrator.commands.run.run_folder import run_folder
-from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.beside import PictureBeside
-from orchestrator.drawing.seen import overview_of
-from orchestrator.report.results import LIVE, LOG, PICTURE, is_shown, write_page, write_picture, write_summary
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED
+from orchestrator.inputs.text.failures import verdict_stands
+from orchestrator.inputs.text.readable import shortly
+from orchestrator.presentation.drawing.beside import PictureBeside
+from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.report.results import (
+    LIVE,
+    LOG,
+    PICTURE,
+    is_shown,
+    write_page,
+    write_picture,
+    write_summary,
+)
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import ImportedFmus, foreign_of, load_bound_scenario
 from orchestrator.session.session import SimulationResult
-from orchestrator.stream.realtime import Realtime
-from orchestrator.text.console import say
-from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
-from orchestrator.text.failures import verdict_stands
-from orchestrator.text.readable import shortly
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.session.stream.realtime import Realtime
+from orchestrator.simulation.cosim.recording import Recording
 
 
 class Done(NamedTuple):

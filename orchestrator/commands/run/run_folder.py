@@ -5,9 +5,9 @@ from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
-from orchestrator.report.results import LOG, SUMMARY
-from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import lock_folder
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.presentation.report.results import LOG, SUMMARY
 
 RUNS = Path("runs")
 """Where runs go by default, below the current folder."""

@@ -11,18 +11,18 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from orchestrator.drawing.save import save
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import console
+from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.bakeoff.figure import COLOURS
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of, with_samples
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.confidence import wilson
 
 DRIVER_SPEED = 0.8
 """Speed the driver means [m/s]."""

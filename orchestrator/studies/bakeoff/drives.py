@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.studies.bakeoff.entries import LABELS
 from orchestrator.studies.sweep.columns import WITHIN
 

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache
 
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario, Slot
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot
 from orchestrator.studies.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 

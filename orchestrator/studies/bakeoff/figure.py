@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from orchestrator.drawing.save import save
+from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.bakeoff.drives import REFUSED, Drive, exact_limits
 from orchestrator.studies.bakeoff.entries import CONTROLLERS, SLOTS
 

@@ -10,18 +10,18 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table as Printed
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.end_condition import EndCondition
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.inputs.scenario.end_condition import EndCondition
+from orchestrator.inputs.text.console import console
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.bakeoff.drives import EXACT, REFUSED, Drive, drives, exact_limits
 from orchestrator.studies.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, entries
 from orchestrator.studies.bakeoff.figure import draw
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Metric
-from orchestrator.verdict.outcome import BEYOND
 
 CONTENT = {
     "name": "bakeoff",

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.contact import contact_facts
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.contact import contact_facts
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.recording import Recording
 
 KINEMATIC = "kinematic"
 BODIES = {

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 
 from controller_fmu import APART
 from modelkit.variables import variables
-from orchestrator.scenario.models import APART as SYSTEMS
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.models import APART as SYSTEMS
+from orchestrator.inputs.text.errors import BadInput
 
 STOP_TIME = 400.0
 PLAN_MARGIN = 0.1

@@ -7,8 +7,8 @@ import numpy as np
 
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import Variable, flatten, variables, with_values
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
 
 SAMPLE_NS = 10_000_000
 MAX_SAMPLES = 6000

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 from fmus.contents.description import project_version
 from fmus.files import write_whole
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScene, SceneRun, drive_scene
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
-from orchestrator.text.errors import BadInput
 
 SHIPPED = "valet-"
 ROWS = "rows"

@@ -7,10 +7,11 @@ from functools import partial
 from pathlib import Path
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, parameters_of
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.falsification.objective import objective_of
 from orchestrator.studies.falsification.subject import Subject
 from orchestrator.studies.falsification.written import space_of
@@ -20,7 +21,6 @@ from orchestrator.studies.sweep.engines import RECORDED_CHUNK, choose_task, make
 from orchestrator.studies.sweep.job import Chunk, Job, chunk_scenario
 from orchestrator.studies.sweep.rows import row_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.text.errors import BadInput
 
 
 def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:

@@ -8,8 +8,11 @@ import numpy as np
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.yaml_file import read_mapping
 from orchestrator.studies.falsification.search import Seed
 from orchestrator.studies.falsification.shrink import away
 from orchestrator.studies.falsification.subject import Subject
@@ -19,9 +22,6 @@ from orchestrator.studies.sweep.rows import why_not_compiled
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge, limit_value, values_in
-from orchestrator.text.errors import BadInput
-from orchestrator.text.yaml_file import read_mapping
-from orchestrator.verdict.conditions import CONDITIONS
 
 NOTES = "counterexamples.json"
 """What the counterexamples of a folder came to when they were written."""

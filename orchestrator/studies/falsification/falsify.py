@@ -6,16 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.evaluation.verdict.confidence import clopper_pearson
+from orchestrator.inputs.text.console import Meter
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.interrupts import on_interrupt
 from orchestrator.studies.falsification.counterexamples import Counterexample, write_counterexample
 from orchestrator.studies.falsification.search import Drawn, Seed, cma_es, global_sampling, monte_carlo
 from orchestrator.studies.falsification.sensitivity import SobolIndices, first_orders, total_index
 from orchestrator.studies.falsification.shrink import away, chance, shrink
 from orchestrator.studies.falsification.subject import Subject
 from orchestrator.studies.falsification.subset_simulation import LAST_SEED, SubsetSimulation, subset_simulation
-from orchestrator.text.console import Meter
-from orchestrator.verdict.confidence import clopper_pearson
 
 EVERYWHERE, BY_LOT, DOWNHILL, TOTALS, RARE = 0.15, 0.3, 0.25, 0.15, 0.15
 """Shares of the budget. What shrinking takes comes on top, about as much again at most."""

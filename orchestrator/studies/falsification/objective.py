@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import REQUIREMENT_SETS, Requirement, library_requirements
+from orchestrator.evaluation.verdict.numbers import NUMBERS
+from orchestrator.inputs.scenario.requirements import REQUIREMENT_SETS, Requirement, library_requirements
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.rows import measure_of
 from orchestrator.studies.sweep.study.study import Objective, Study
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.verdict.numbers import NUMBERS
 
 CONTACT = Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
-from orchestrator.report.page import still_page
+from orchestrator.presentation.report.page import still_page
 from orchestrator.studies.falsification.counterexamples import Counterexample, factors_of
 from orchestrator.studies.falsification.falsify import FalsificationResult
 from orchestrator.studies.falsification.sensitivity import Index

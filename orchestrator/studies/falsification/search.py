@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.falsification.subject import Subject
 from orchestrator.studies.falsification.subset_simulation import LAST_SEED
 from orchestrator.studies.sweep.study.space import Seeds

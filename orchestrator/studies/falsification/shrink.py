@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.falsification.search import Seed
 from orchestrator.studies.falsification.subject import Subject
 from orchestrator.studies.sweep.study.space import Space

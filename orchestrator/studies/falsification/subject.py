@@ -12,9 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fmus.files import whole
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import PENETRATION, Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.inputs.scenario.scenario import PENETRATION, Scenario
+from orchestrator.inputs.text.console import Meter, say
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.falsification.objective import smallest
 from orchestrator.studies.sweep.columns import fill_columns
 from orchestrator.studies.sweep.engine import Engine, all_rows
@@ -24,8 +26,6 @@ from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Seeds, Space
 from orchestrator.studies.sweep.study.study import Columns, Objective, Study
 from orchestrator.studies.sweep.verdict import judge_rows, limit_value, things, values_in
-from orchestrator.text.console import Meter, say
-from orchestrator.verdict.conditions import CONDITIONS
 
 CHUNKS_PER_WORKER = 4
 """Chunks of a batch for each worker."""

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import Field
 from orchestrator.studies.sweep.study.space import Factor, Seeds, Space
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.text.errors import BadInput
 
 
 def space_of(study: Study) -> Space:

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.scenario.car import vehicle_definition
-from orchestrator.scenario.flat_names import flatten_section
+from orchestrator.inputs.scenario.car import vehicle_definition
+from orchestrator.inputs.scenario.flat_names import flatten_section
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.quantities import scalar
 from orchestrator.studies.identification.compiled_vehicle import PARAMETERS
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import scalar
 
 CAR = "car."
 ELEMENT = re.compile(r"([^\[\]]+)\[(\d+)\]")

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from fmus.installation import missing_package
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.models import MODELS
-from orchestrator.text.errors import BadInput
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_instance import Array
 
 MODEL = MODELS["vehicle"]
 PARAMETERS = {item.name: item for item in variables(MODEL.params, MODEL.first_params())}

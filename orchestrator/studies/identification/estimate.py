@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.parameter import PRIOR_RANGE, FitParameter
 from orchestrator.studies.identification.playback import DEAD_TIME, dead_time_resolution
 from orchestrator.studies.identification.problem import Problem

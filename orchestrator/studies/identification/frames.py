@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.signals import FRAMES, MeasuredDrive
 
 WINDOW_TIME, MIN_WINDOWS, MAX_WINDOWS = 4.0, 6, 40

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.estimate import NORMAL_95, Estimate, covariance
 from orchestrator.studies.identification.manoeuvres import (
     MANOEUVRES,

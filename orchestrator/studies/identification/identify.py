@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.estimate import estimate
 from orchestrator.studies.identification.identifiability import identifiability
@@ -16,7 +17,6 @@ from orchestrator.studies.identification.playback import WITHOUT_ACTUATOR, WITHO
 from orchestrator.studies.identification.problem import Problem
 from orchestrator.studies.identification.result import Identification
 from orchestrator.studies.identification.signals import MeasuredDrive
-from orchestrator.text.errors import BadInput
 
 BODY, KINEMATIC = "body", 0
 

@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmus.installation import missing_package
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.log.read_log import read_info, read_log
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.quantities import unit_symbol
+from orchestrator.inputs.text.table_file import TableError, read_table, unit_in_name
+from orchestrator.presentation.log.read_log import read_info, read_log
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.system.units import UnfitUnitsError, conversion
 from orchestrator.studies.identification.compiled_vehicle import SIGNALS
 from orchestrator.studies.identification.signals import USED, MeasuredDrive, Series, drive_of
-from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.testing.steptest.stimuli import StimulatedInput, column_values, table_times
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import unit_symbol
-from orchestrator.text.table_file import TableError, read_table, unit_in_name
 
 MDF_SUFFIXES = (".mf4", ".mdf", ".dat")
 MCAP_SUFFIX = ".mcap"

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.problem import Problem
 from orchestrator.studies.identification.signals import FRAMES, TYPICAL_NOISE, MeasuredDrive, Series, unit_of
 

@@ -7,14 +7,14 @@ import numpy as np
 from fmus.files import write_whole
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.report.page import page
-from orchestrator.report.payload import Arrays
-from orchestrator.report.plots import plots_of
-from orchestrator.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
-from orchestrator.report.run_data import ribbons_of, run_data
-from orchestrator.report.still import origin_of
+from orchestrator.presentation.report.page import page
+from orchestrator.presentation.report.payload import Arrays
+from orchestrator.presentation.report.plots import plots_of
+from orchestrator.presentation.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
+from orchestrator.presentation.report.run_data import ribbons_of, run_data
+from orchestrator.presentation.report.still import origin_of
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.studies.identification.compiled_vehicle import OUTPUTS, PARAMETERS, SIGNALS
 from orchestrator.studies.identification.frames import FrameFit
 from orchestrator.studies.identification.result import (

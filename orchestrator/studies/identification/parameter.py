@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from modelkit.variables import Variable
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 from orchestrator.studies.identification.compiled_vehicle import PARAMETERS
-from orchestrator.text.errors import BadInput, suggestion_or_choices
 
 PRIOR_RANGE = 20.0
 """Standard deviation of what is known before the drive, in useful accuracies: it keeps the solution finite."""

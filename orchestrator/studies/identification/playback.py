@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.compiled_vehicle import INPUTS, PARAMETERS, InputSequence
 from orchestrator.studies.identification.parameter import STEERING_ACTUATOR
 from orchestrator.studies.identification.signals import MeasuredDrive, Series

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.compiled_vehicle import OUTPUTS, PARAMETERS, CompiledVehicle
 from orchestrator.studies.identification.frames import FrameFit, Simulated, window_count
 from orchestrator.studies.identification.parameter import FitParameter

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.identification.compiled_vehicle import INPUTS, SIGNALS
-from orchestrator.text.errors import BadInput, suggestion_or_choices
 
 FRAMES = {"pose": ("pose.x", "pose.y", "pose.heading"), "odometry": ("odometry.x", "odometry.y", "odometry.heading")}
 """Poses whose frame is that of the log: it is estimated beside the parameters."""

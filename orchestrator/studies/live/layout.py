@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.slot_layout import KEY, LayoutOrigin, SlotLayout, scene_of
-from orchestrator.scenario.target_point import as_rear_axle
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.slot_layout import KEY, LayoutOrigin, SlotLayout, scene_of
+from orchestrator.inputs.scenario.target_point import as_rear_axle
 
 SIZES = ("length", "depth")
 LAYOUT_TOLERANCE = 1e-9

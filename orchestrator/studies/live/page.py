@@ -14,14 +14,14 @@ import yaml
 from fmus.files import write_whole
 from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
-from orchestrator.drawing import palette
-from orchestrator.report import page as report
-from orchestrator.report.charts import charts_of_models
-from orchestrator.report.payload import Arrays
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.drawing import palette
+from orchestrator.presentation.report import page as report
+from orchestrator.presentation.report.charts import charts_of_models
+from orchestrator.presentation.report.payload import Arrays
 from orchestrator.studies.live.described import models_data
 from orchestrator.studies.live.situation import numbers_data, situation
-from orchestrator.text.errors import BadInput
 
 ROOM = Path(__file__).parent
 FROM_REPORT = report.ROOM / "template"

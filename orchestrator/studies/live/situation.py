@@ -6,22 +6,22 @@ from typing import Any
 import numpy as np
 
 from fmus.compiled_batch import FAULTS
-from orchestrator.scenario.end_condition import SPEED
-from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import models_for
-from orchestrator.scenario.obstacle_map import map_of
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.evaluation.verdict.limit_text import requirement_text
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import NUMBERS, OF_WHOLE_RUNS, STANDING
+from orchestrator.inputs.scenario.end_condition import SPEED
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.models import models_for
+from orchestrator.inputs.scenario.obstacle_map import map_of
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import MISSED, SUCCESS, Scenario
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.live.layout import layout_data
 from orchestrator.studies.sweep.disturbed import fault_receivers, numbers_for
 from orchestrator.studies.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.studies.sweep.verdict import limit_value
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.limit_text import requirement_text
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import NUMBERS, OF_WHOLE_RUNS, STANDING
 
 FIRST = "guo2015-case4"
 

@@ -22,8 +22,8 @@ from controller_fmu.registry import ControllerParams
 from modelkit.car import Car
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
 from orchestrator.studies.papers.apa_figure import draw_apa
 from orchestrator.studies.papers.result import (
     CONCLUSION,

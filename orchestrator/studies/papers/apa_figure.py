@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from orchestrator.drawing.save import save
+from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.papers.result import Driven
 
 ROWS_PER_OUTLINE = 120

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.papers.result import Driven
-from orchestrator.verdict.summary import summarize
 
 
 def drive(name: str, files: Mapping[str, Path] | None = None, kind: str = "none") -> Driven:

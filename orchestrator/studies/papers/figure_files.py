@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fmus.files import write_whole
-from orchestrator.drawing.run_figure import check_figure, save_figure, style_context
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.drawing.run_figure import check_figure, save_figure, style_context
 from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.studies.papers.result import Drive
-from orchestrator.text.errors import BadInput
 
 FORMATS = (".png", ".svg", ".pdf")
 

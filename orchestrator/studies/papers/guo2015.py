@@ -16,12 +16,12 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import plan
 from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
+from orchestrator.evaluation.verdict.summary import Event
 from orchestrator.studies.papers.guo2015_case5 import fit_rows
 from orchestrator.studies.papers.guo2015_drivers import obeying_rows
 from orchestrator.studies.papers.guo2015_figure import draw_case
 from orchestrator.studies.papers.guo2015_windows import HEADING_TOLERANCE, POSITION_TOLERANCE, START, window_rows
 from orchestrator.studies.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
-from orchestrator.verdict.summary import Event
 
 TITLE = "Path tracking control strategy of automatic parking system (Guo et al. 2015)"
 CASES = (1, 2, 3, 4, 5)

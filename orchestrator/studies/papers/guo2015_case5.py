@@ -6,13 +6,13 @@ import numpy as np
 
 from controller_fmu.guo2015.phases import GuoPhase
 from fmus.native.compilers import can_compile
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.papers.result import PRINTED, Row, not_tested
 from orchestrator.studies.sweep.in_memory import columns_in_memory
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.verdict.measures import Instants, Measure
 
 FASTER_AT = 18.5
 """When the driver speeds up, as printed [s]."""

@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from controller_fmu.guo2015.params import GuoThresholds
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.studies.papers.result import CONCLUSION, Row, in_line
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.in_memory import columns_in_memory
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.verdict.measures import Measure
 
 SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 """What the driver means to drive [m/s]; the paper's cases lie between."""

@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from orchestrator.drawing.save import save
+from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.papers.result import Driven
 
 COLOURS = ("#1f5fbf", "#d1602a", "#2b8a5a")

@@ -7,10 +7,10 @@ how narrow the window is shows more.
 from functools import lru_cache
 from typing import NamedTuple
 
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.evaluation.verdict.summary import Event, summarize
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.papers.result import Row
-from orchestrator.verdict.summary import Event, summarize
 
 RUN = "guo2015-case4-105"
 START = (-4.803, -2.441, 0.588)

@@ -14,9 +14,9 @@ from matplotlib.patches import Polygon
 
 from controller_fmu.hsic.characteristic_states import Characteristic
 from controller_fmu.zhang2022.phases import ZhangPhase
-from orchestrator.drawing.save import save as save_picture
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.presentation.drawing.save import save as save_picture
 from orchestrator.studies.papers.result import Driven
-from orchestrator.verdict.geometry import CarOutline
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"
 

@@ -3,8 +3,8 @@
 import importlib
 from pathlib import Path
 
+from orchestrator.inputs.text.errors import BadInput, suggestion
 from orchestrator.studies.papers.result import Reproduce
-from orchestrator.text.errors import BadInput, suggestion
 
 
 def papers() -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 from controller_fmu.preview.params import DEFAULT_ROAD
 from controller_fmu.preview.stage import PreviewStage
 from fmus.native.compilers import can_compile
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.papers.preview_figure import draw_preview, draw_surfaces, draw_sweep
 from orchestrator.studies.papers.result import (
     CONCLUSION,

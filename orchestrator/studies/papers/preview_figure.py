@@ -14,8 +14,8 @@ from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.preview import PreviewErrors
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.drawing.save import save
+from orchestrator.presentation.drawing.save import save
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.papers.result import Driven
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"

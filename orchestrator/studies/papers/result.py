@@ -5,9 +5,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Outcome, Scenario
-from orchestrator.verdict.summary import Summary, summarize
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.scenario import Outcome, Scenario
+from orchestrator.simulation.cosim.recording import Recording
 
 
 class Driven(NamedTuple):

@@ -5,8 +5,8 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
+from orchestrator.inputs.text.console import console
 from orchestrator.studies.papers.result import OWN, Reproduction, Row
-from orchestrator.text.console import console
 
 
 def print_reproduction(result: Reproduction, out: Path) -> None:

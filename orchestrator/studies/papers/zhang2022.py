@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from controller_fmu.zhang2022.phases import ZhangPhase
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.papers.motion_figure import draw_zhang
 from orchestrator.studies.papers.result import CONCLUSION, OWN, Drive, Driven, Reproduction, Row, not_tested, yes_row
 

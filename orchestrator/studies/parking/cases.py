@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
-from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.requirements import Requirement, library_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
+from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
 
 ISO = SlotSizes(**library_slot_sizes("iso16787"))
 BODIES = ("kinematic", "double_track")

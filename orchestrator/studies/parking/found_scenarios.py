@@ -5,10 +5,10 @@ import random
 from typing import Any, NamedTuple
 
 from controller_fmu.valet.params import SlotWish
-from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.obstacle_map import box_corners
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.obstacle_map import box_corners
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Target
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.found_slots import (
     SEED_STRIDE,

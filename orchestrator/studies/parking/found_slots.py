@@ -9,8 +9,8 @@ import random
 from typing import NamedTuple
 
 from modelkit.car import car_length
-from orchestrator.scenario.obstacle_map import box_corners
-from orchestrator.scenario.scenario import Slot, Target
+from orchestrator.inputs.scenario.obstacle_map import box_corners
+from orchestrator.inputs.scenario.scenario import Slot, Target
 from orchestrator.studies.parking.cases import CARS
 
 ANGLES = (30, 45, 60, 90, 120, 135, 150)

@@ -5,16 +5,16 @@ from typing import Any
 
 from rich.table import Table as Printed
 
-from orchestrator.scenario.obstacle_map import map_of
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.inputs.scenario.obstacle_map import map_of
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.found_scenarios import out_of, scenario_of
 from orchestrator.studies.parking.found_slots import DetectedSlotCase, cases
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.outcome import BEYOND
 
 MEASURES = {
     "plans": Measure("last", "controller.valet.plans"),

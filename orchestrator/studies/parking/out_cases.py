@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.slot import Kind
 from modelkit.car import car_length
-from orchestrator.scenario.car import car_parameters
+from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.studies.parking.cases import BODY, CARS, KINDS
 from orchestrator.studies.parking.imperfect import imperfect
 

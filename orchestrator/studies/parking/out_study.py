@@ -8,10 +8,12 @@ import numpy as np
 from rich.table import Table as Printed
 
 from modelkit.vocabulary import Pose
-from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import CARS, KINDS
 from orchestrator.studies.parking.out_cases import PASSES, PullOutCase, case_labels, case_of, cases, side_of, vehicle_of
 from orchestrator.studies.parking.out_known import free_ahead, moves_out
@@ -19,8 +21,6 @@ from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.measures import Instants, Measure
 
 STOP_TIME = 150.0
 STANDSTILL_SPEED = 0.01

@@ -9,14 +9,14 @@ import numpy as np
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.evaluation.verdict.frame import in_frame
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
 from orchestrator.studies.parking.start_range import is_inside
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
-from orchestrator.verdict.frame import in_frame
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.numbers import Metric
 
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 FALSE_DETECTION_DISTANCE = 0.5

@@ -18,7 +18,10 @@ from rich.table import Table as Printed
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import car_length
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.inputs.text.console import console
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
 from orchestrator.studies.parking.parkings import (
     FALSE_DETECTION_DISTANCE,
@@ -33,9 +36,6 @@ from orchestrator.studies.parking.parkings import SHOWN as WHILE_SHOWN
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Metric
 
 WIDER: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.8), Kind.PERPENDICULAR: (0.0, 0.5)}
 """Gaps that fit, over ISO 16787's shortest [m]."""

@@ -16,17 +16,17 @@ from rich.table import Table as Printed
 
 from controller_fmu.common.external_slot import SlotKind
 from modelkit.car import car_length
-from orchestrator.scenario.car import car_parameters
-from orchestrator.scenario.obstacle_map import map_of
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.obstacle_map import map_of
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
+from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.imperfect import imperfect
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure
 
 ANGLES = (30, 45, 60, 75, 90)
 KINDS: dict[str, int] = {"tail": SlotKind.TAIL_IN, "nose": SlotKind.NOSE_IN}

@@ -14,7 +14,7 @@ from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.registry import ControllerParams
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
 
 
 def is_inside(start: Pose, slot: Slot, controller: dict[str, Any]) -> bool:

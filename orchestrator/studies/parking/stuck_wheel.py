@@ -14,11 +14,11 @@ import numpy as np
 
 from controller_fmu.common.params import LimitParams
 from controller_fmu.interface import Reason
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 
 BASES: dict[str, tuple[str, ...]] = {
     "ntbptcwpt": ("guo2015-case3",),

@@ -6,7 +6,8 @@ from pathlib import Path
 from rich.table import Table as Printed
 
 from controller_fmu.apa.chart import Mode
-from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
 from orchestrator.studies.parking.parkings import (
     FAILED,
@@ -21,7 +22,6 @@ from orchestrator.studies.parking.parkings import (
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
 
 GBT_SETS = dict(zip(KINDS, ("gbt41630", "gbt41630-perpendicular"), strict=True))
 CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="house")

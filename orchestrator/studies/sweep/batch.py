@@ -23,17 +23,17 @@ from fmus.compiled_batch import (
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
 from modelkit.model import Model
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.end_condition import SPEED
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.inputs.scenario.end_condition import SPEED
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import RESOURCES, NotRunError
+from orchestrator.inputs.text.failures import reason_of
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.disturbed import fault_numbers, fault_receivers
 from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunk_scenario
 from orchestrator.studies.sweep.rows import FIRST_MEASURE, row_of
 from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM, Choices, StudyRows, choices_of, explanation
-from orchestrator.text.errors import RESOURCES, NotRunError
-from orchestrator.text.failures import reason_of
-from orchestrator.verdict.measures import Measure
 
 _compiling = threading.Lock()
 

@@ -7,18 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.signal import Signal
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import PENETRATION
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.evaluation.verdict.truth import Bools
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import PENETRATION
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Chunk, Job, truths
 from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.study.theirs import signals_of
 from orchestrator.studies.sweep.verdict import RESULTS, judge, limit_value, things, values_in
-from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Metric
-from orchestrator.verdict.truth import Bools
 
 WITHIN = "within {}"
 """Name of the column that says whether a run is within a set of limits; one in contact is within none."""

@@ -9,8 +9,8 @@ from typing import Any
 
 from fmus.files import new_folder
 from fmus.installation import missing_package
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.engine import safe_children
-from orchestrator.text.errors import BadInput
 
 distributed: Any = importlib.import_module("distributed")
 HOST = "127.0.0.1"

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.sweep.dask_cluster import PrivateCluster
 from orchestrator.studies.sweep.engine import CHUNKS_PER_WORKER, POLL_INTERVAL, ChunkTask, Result, cores, rows_or_reason
 from orchestrator.studies.sweep.job import Chunk, Job
-from orchestrator.text.errors import BadInput
 
 distributed: Any = importlib.import_module("distributed")
 CONNECT_TIMEOUT = 10.0

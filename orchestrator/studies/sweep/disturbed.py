@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from fmus.compiled_batch import FAULT_NUMBERS, FaultInputs
 from modelkit.variables import Variable
-from orchestrator.cosim.algorithm import CoSimulation
-from orchestrator.cosim.faults import SEED_STRIDE, receivers
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.quantities import NS_PER_SECOND, number, scalar
 from orchestrator.session.session import Messages, make_instances
+from orchestrator.simulation.cosim.algorithm import CoSimulation
+from orchestrator.simulation.cosim.faults import SEED_STRIDE, receivers
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.system.assemble import elaborate
 from orchestrator.studies.sweep.job import Chunk, Job
-from orchestrator.system.assemble import elaborate
-from orchestrator.text.quantities import NS_PER_SECOND, number, scalar
 
 SYSTEM = "system"
 """The controller's parameter that says which model it is, and so which inputs there are."""

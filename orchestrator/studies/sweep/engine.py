@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Protocol
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.inputs.text.errors import RESOURCES, NotRunError
+from orchestrator.inputs.text.failures import reason_of
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Chunk, Job
-from orchestrator.text.errors import RESOURCES, NotRunError
-from orchestrator.text.failures import reason_of
 
 Work = Callable[[Job, Chunk], Array]
 Result = tuple[Chunk, Array | NotRunError]

@@ -27,9 +27,10 @@ from pathlib import Path
 from fmus.files import live_in, own_room
 from fmus.installation import missing_package
 from fmus.native.compilers import can_compile
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.batch import run_batch, run_recorded
 from orchestrator.studies.sweep.engine import (
     CHUNKS_PER_WORKER,
@@ -44,7 +45,6 @@ from orchestrator.studies.sweep.engine import (
 from orchestrator.studies.sweep.job import Chunk, Job
 from orchestrator.studies.sweep.rows import why_not_compiled
 from orchestrator.studies.sweep.study.theirs import files_of
-from orchestrator.text.errors import BadInput
 
 BATCH_CHUNK = 500
 """Runs per chunk of the compiled batch: about half a second."""
@@ -63,7 +63,7 @@ def choose_task(scenario: Scenario, fmus: str | None) -> ChunkTask:
     if fmus == "none":
         return in_process
     if fmus is not None:
-        from orchestrator.cosim.fmu_files import fmu_files
+        from orchestrator.simulation.cosim.fmu_files import fmu_files
 
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
         return ChunkTask(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import LONGEST_STEP, Scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import LONGEST_STEP, Scenario
+from orchestrator.inputs.text.errors import BadInput, suggestion
 from orchestrator.studies.sweep.study.theirs import parameters_known
-from orchestrator.text.errors import BadInput, suggestion
 
 TIME = Signal("s", "", 0.0, 1e6)
 SCENARIO_FIELDS: dict[str, Variable] = {

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.studies.sweep.batch import compile_models
 from orchestrator.studies.sweep.columns import fill_columns
 from orchestrator.studies.sweep.engine import all_rows

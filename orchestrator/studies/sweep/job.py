@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.pace import DURATION, NAMES, UNLIMITED, stop_times
-from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.truth import TRUE_KEYS, GroundTruth, join_truths, truth_of
+from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.pace import DURATION, NAMES, UNLIMITED, stop_times
+from orchestrator.inputs.scenario.scenario import Scenario, Target
+from orchestrator.inputs.text.quantities import NS_PER_SECOND
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import TRUE_OWNERS
 from orchestrator.studies.sweep.rows import measures_for
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.text.quantities import NS_PER_SECOND
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.truth import TRUE_KEYS, GroundTruth, join_truths, truth_of
 
 Times = NDArray[np.int64]
 

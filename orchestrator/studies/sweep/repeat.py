@@ -6,17 +6,17 @@ from typing import Any, NamedTuple
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.report.results import LOG, is_shown, write_page, write_picture, write_summary
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.presentation.report.results import LOG, is_shown, write_page, write_picture, write_summary
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
 from orchestrator.session.session import SimulationResult
+from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.sweep.job import chunk_scenario
 from orchestrator.studies.sweep.table import UNREADABLE, Table
-from orchestrator.text.errors import BadInput
-from orchestrator.text.owned import lock_folder
-from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
 

@@ -9,17 +9,17 @@ from typing import get_args
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.end_condition import state_word, states_of
-from orchestrator.scenario.requirements import Requirement, Where, Window
-from orchestrator.scenario.scenario import PENETRATION, Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.evaluation.verdict.judge import CHART, judge
+from orchestrator.evaluation.verdict.measures import Instants, Measure, measure_recording
+from orchestrator.evaluation.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, RunFacts, of_whole_run
+from orchestrator.inputs.scenario.end_condition import state_word, states_of
+from orchestrator.inputs.scenario.requirements import Requirement, Where, Window
+from orchestrator.inputs.scenario.scenario import PENETRATION, Scenario
+from orchestrator.inputs.text.errors import BadInput, suggestion
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.studies.sweep.study.theirs import files_of, signals_of
-from orchestrator.text.errors import BadInput, suggestion
-from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.judge import CHART, judge
-from orchestrator.verdict.measures import Instants, Measure, measure_recording
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, RunFacts, of_whole_run
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""

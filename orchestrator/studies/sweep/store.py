@@ -17,8 +17,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from fmus.files import whole, write_whole
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.sweep.columns import TableColumn
-from orchestrator.text.errors import BadInput
 
 ABOUT, CHECKSUM = b"apa", "apa.checksum"
 EMPTY_CHECKSUM = b"0" * 64

@@ -10,8 +10,8 @@ from fmus.compiler.slicing import Slice
 from fmus.study_slices import outputs_left_out
 from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Times
 
 STUDY_CODE_FROM = 5_000

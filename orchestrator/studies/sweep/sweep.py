@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.scenario.plausible import implausible, is_implausible
+from orchestrator.inputs.scenario.plausible import implausible, is_implausible
+from orchestrator.inputs.text.console import Meter, say
+from orchestrator.inputs.text.errors import BadInput, NotRunError, suggestion
 from orchestrator.session.provenance import versions
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.interrupts import on_interrupt
 from orchestrator.studies.sweep.batch import compile_models, own_choices
 from orchestrator.studies.sweep.columns import columns_of, fill_columns
 from orchestrator.studies.sweep.engine import Engine
@@ -21,8 +23,6 @@ from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunks, job_to, m
 from orchestrator.studies.sweep.store import Store
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.study.theirs import hashes_of
-from orchestrator.text.console import Meter, say
-from orchestrator.text.errors import BadInput, NotRunError, suggestion
 
 
 @dataclass

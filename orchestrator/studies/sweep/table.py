@@ -11,11 +11,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pydantic import BaseModel
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.inputs.text.console import say
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Chunk, job_from
 from orchestrator.studies.sweep.store import ABOUT, sum_of
-from orchestrator.text.console import say
-from orchestrator.text.errors import BadInput
 
 OLDER = {ABOUT, b"ARROW:schema"}
 """What tables carry that were written before they had a checksum."""

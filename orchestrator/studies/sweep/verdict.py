@@ -1,4 +1,4 @@
-"""The summary of many runs as columns: the numbers and verdicts of ``orchestrator.verdict.summary``."""
+"""The summary of many runs as columns: the numbers and verdicts of ``orchestrator.evaluation.verdict.summary``."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -6,10 +6,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.end_condition import state_word, states_of
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import PENETRATION, Outcome, Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS, share
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import NUMBERS, SPEED, Metric, numbers, things_of
+from orchestrator.evaluation.verdict.outcome import Ends, RequiredCheck, outcomes
+from orchestrator.evaluation.verdict.truth import Bools, GroundTruth
+from orchestrator.inputs.scenario.end_condition import state_word, states_of
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import PENETRATION, Outcome, Scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Job
 from orchestrator.studies.sweep.rows import (
     ABORTED,
@@ -20,11 +25,6 @@ from orchestrator.studies.sweep.rows import (
     values_of,
 )
 from orchestrator.studies.sweep.study.theirs import declare_signals
-from orchestrator.verdict.conditions import CONDITIONS, share
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import NUMBERS, SPEED, Metric, numbers, things_of
-from orchestrator.verdict.outcome import Ends, RequiredCheck, outcomes
-from orchestrator.verdict.truth import Bools, GroundTruth
 
 OUTCOMES: tuple[Outcome, ...] = ("parked", "not_parked", "failed", "aborted", "finished", "not_finished")
 

@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.scenario.files import library_names
-from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.scenario.requirements import Requirement, library_requirements
-from orchestrator.scenario.scenario import Outcome
-from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
-from orchestrator.text.yaml_file import explain, read_mapping
+from orchestrator.inputs.scenario.files import library_names
+from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.scenario import Outcome
+from orchestrator.inputs.text.errors import BadInput, suggestion, suggestion_or_choices
+from orchestrator.inputs.text.yaml_file import explain, read_mapping
 
 ROOM = Path(__file__).parent
 STEP_TESTS = ROOM / "steptests"

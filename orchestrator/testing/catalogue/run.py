@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
 from orchestrator.testing.catalogue.entries import STEP_TESTS, select_standards
 from orchestrator.testing.catalogue.show import count_text, verdict_tables, write_catalogue
 from orchestrator.testing.catalogue.verdicts import MISSED, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.testing.suite.junit import write_junit
 from orchestrator.testing.suite.suite import SuiteConfig, SuiteResult, provenance_of, run_tests
-from orchestrator.text.console import console
-from orchestrator.text.errors import NOT_PARKED, PARKED
 
 NOT_RUN = "the test ended before this standard was judged"
 NOTHING: Mapping[str, str] = MappingProxyType({})

@@ -8,9 +8,9 @@ from pathlib import Path
 from rich.table import Table
 
 from fmus.files import write_whole
-from orchestrator.report.page import still_page
+from orchestrator.evaluation.verdict.limit_text import sentence
+from orchestrator.presentation.report.page import still_page
 from orchestrator.testing.catalogue.verdicts import MET, MISSED, ClauseRun, ClauseVerdict, counts
-from orchestrator.verdict.limit_text import sentence
 
 BODY = """<header class="top"><div class="headline"><h1>Catalogue of parking requirements</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>

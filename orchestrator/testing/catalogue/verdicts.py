@@ -3,15 +3,15 @@
 from collections.abc import Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.judge import Check, judge
+from orchestrator.evaluation.verdict.limit_text import sentence
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BAD_INPUT
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.catalogue.entries import Clause, Standard
 from orchestrator.testing.suite.junit import Case, Suite
 from orchestrator.testing.suite.suite import SuiteResult
-from orchestrator.text.errors import BAD_INPUT
-from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.limit_text import sentence
-from orchestrator.verdict.numbers import facts_of
 
 Word = Literal["met", "missed", "not tested"]
 MET: Word = "met"

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.wiring.modes import ANY, ModeList, word
-from orchestrator.scenario.wiring.system_text import Feed, terms
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.wiring.modes import ANY, ModeList, word
+from orchestrator.inputs.scenario.wiring.system_text import Feed, terms
 from orchestrator.session.foreign import Files
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.coverage.covered import ChartCoverage, RowCoverage
 
 PHASE = "controller.phase"

@@ -8,8 +8,8 @@ from typing import Any
 from rich.table import Table
 
 from fmus.files import write_whole
-from orchestrator.drawing.chart_svg import chart_svg
-from orchestrator.report.page import still_page
+from orchestrator.presentation.drawing.chart_svg import chart_svg
+from orchestrator.presentation.report.page import still_page
 from orchestrator.testing.coverage.branches import Branch, branch_share
 from orchestrator.testing.coverage.coverage import Coverage
 from orchestrator.testing.coverage.covered import ChartCoverage, RowCoverage, share

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.report.page import still_page
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.limit_text import sentence
+from orchestrator.presentation.report.page import still_page
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.step_test import StepTest
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.limit_text import sentence
 
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 960.0, 170.0, 76.0, 24.0, 12.0
 MOST_POINTS = 1500

@@ -7,26 +7,26 @@ import numpy as np
 
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.algorithm import CoSimulation, last_exchange
-from orchestrator.cosim.fmu_files import fmu_beside, fmu_files
-from orchestrator.cosim.fmu_instance import Array, FmuInstance
-from orchestrator.cosim.local_instance import LocalInstance
-from orchestrator.cosim.model_description import DESCRIPTION
-from orchestrator.cosim.model_instance import ModelInstance
-from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.log.read_log import log_file, read_log
-from orchestrator.scenario.flat_names import flatten_section
-from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.scenario import Parameter
+from orchestrator.inputs.scenario.flat_names import flatten_section
+from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.scenario import Parameter
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.quantities import text_or_scalar
+from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.foreign import FOREIGN, ImportedFmus, fmu_of, parameters_of
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.session.trust import require_trust
-from orchestrator.system.units import UnfitUnitsError, conversion
+from orchestrator.simulation.cosim.algorithm import CoSimulation, last_exchange
+from orchestrator.simulation.cosim.fmu_files import fmu_beside, fmu_files
+from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance
+from orchestrator.simulation.cosim.local_instance import LocalInstance
+from orchestrator.simulation.cosim.model_description import DESCRIPTION
+from orchestrator.simulation.cosim.model_instance import ModelInstance
+from orchestrator.simulation.cosim.recording import Recorder, Recording
+from orchestrator.simulation.system.units import UnfitUnitsError, conversion
 from orchestrator.testing.steptest.step_test import StepTest
 from orchestrator.testing.steptest.stimuli import StimulatedInput, stimulus
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import text_or_scalar
 
 FMU, MODEL_FILE, OTHER = ".fmu", ".py", "model"
 """How files of models end; the instance's name of a model that is none of ours."""

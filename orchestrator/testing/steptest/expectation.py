@@ -4,9 +4,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from orchestrator.scenario.requirements import Condition
+from orchestrator.inputs.scenario.requirements import Condition
+from orchestrator.inputs.text.errors import BadInput, format_value, suggestion_or_choices
 from orchestrator.testing.steptest.response import RESPONSES
-from orchestrator.text.errors import BadInput, format_value, suggestion_or_choices
 
 Number = float | str | bool
 BOUNDS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import log_file, read_log
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.foreign import ImportedFmus
 from orchestrator.session.session import NOBODY
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.drive import drive
 from orchestrator.testing.steptest.step_test import StepTest
 from orchestrator.testing.steptest.verdict import equivalent, judge_step_test
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.judge import Check
 
 
 def run_step_test(test: StepTest, kind: str, foreign: ImportedFmus = NOBODY) -> tuple[Recording, list[Check]]:

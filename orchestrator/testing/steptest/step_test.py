@@ -5,11 +5,11 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from orchestrator.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.quantities import NS_PER_SECOND, Seconds
+from orchestrator.inputs.text.yaml_file import explain, read_mapping
 from orchestrator.testing.steptest.expectation import Expectation
-from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import NS_PER_SECOND, Seconds
-from orchestrator.text.yaml_file import explain, read_mapping
 
 MARK = "model"
 """The key that a scenario does not have."""

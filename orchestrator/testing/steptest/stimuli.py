@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from modelkit.variables import Variable
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.system.units import UnfitUnitsError, conversion
-from orchestrator.text.errors import BadInput, format_value, suggestion
-from orchestrator.text.quantities import FACTORS, NS_PER_SECOND, number, scalar, unit_symbol
-from orchestrator.text.table_file import TableError, TextTable, read_table, unit_in_name
+from orchestrator.inputs.text.errors import BadInput, format_value, suggestion
+from orchestrator.inputs.text.quantities import FACTORS, NS_PER_SECOND, number, scalar, unit_symbol
+from orchestrator.inputs.text.table_file import TableError, TextTable, read_table, unit_in_name
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.system.units import UnfitUnitsError, conversion
 
 
 class StimulatedInput:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array, Indices
-from orchestrator.verdict.truth import Bools
+from orchestrator.evaluation.verdict.truth import Bools
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 
 
 class TemporalResult(NamedTuple):

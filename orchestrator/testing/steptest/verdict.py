@@ -7,21 +7,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orchestrator.comparison.compare import compare
-from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.cosim.fmu_instance import Array, Indices
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.comparison.compare import compare
+from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.evaluation.verdict.judge import NEVER, Check, judge
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.evaluation.verdict.truth import Bools
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.quantities import number, scalar
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.expectation import Expectation, Limit, Number, Reaction
 from orchestrator.testing.steptest.response import RESPONSES, Response
 from orchestrator.testing.steptest.step_test import StepTest
 from orchestrator.testing.steptest.temporal import TemporalResult, always, eventually, rises, until
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import number, scalar
-from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.judge import NEVER, Check, judge
-from orchestrator.verdict.numbers import facts_of
-from orchestrator.verdict.truth import Bools
 
 
 class LimitMargins(NamedTuple):

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.report.page import still_page
-from orchestrator.scenario.scenario import SUCCESS, Scenario
+from orchestrator.evaluation.verdict.geometry import CarOutline, place, slot_box, vehicle_parameters
+from orchestrator.inputs.scenario.scenario import SUCCESS, Scenario
+from orchestrator.inputs.text.readable import changes_text, manoeuvres_text
+from orchestrator.presentation.report.page import still_page
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.suite.suite import SuiteResult
-from orchestrator.text.readable import changes_text, manoeuvres_text
-from orchestrator.verdict.geometry import CarOutline, place, slot_box, vehicle_parameters
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>

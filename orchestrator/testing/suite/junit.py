@@ -7,8 +7,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fmus.files import whole
-from orchestrator.verdict.judge import Check
-from orchestrator.verdict.limit_text import sentence
+from orchestrator.evaluation.verdict.judge import Check
+from orchestrator.evaluation.verdict.limit_text import sentence
 
 UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
 """Control characters, which XML cannot hold."""

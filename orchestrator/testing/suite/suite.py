@@ -11,26 +11,26 @@ from threading import Lock
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.algorithm import Interrupt
-from orchestrator.cosim.recording import Recording
-from orchestrator.report.results import LOG, PAGE, is_shown, write_page, write_summary
-from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.judge import Check, judge
+from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.evaluation.verdict.summary import Summary, summarize
+from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import PARKED, RESOURCES, BadInput, NotRunError
+from orchestrator.inputs.text.failures import exit_code_and_message
+from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.readable import changes_text
+from orchestrator.presentation.report.results import LOG, PAGE, is_shown, write_page, write_summary
 from orchestrator.session.foreign import Files, ImportedFmus, load_bound_scenario
 from orchestrator.session.provenance import versions
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.curves import write_curves
 from orchestrator.testing.steptest.run import run_step_test
 from orchestrator.testing.steptest.step_test import StepTest, is_step_test, load_step_test
 from orchestrator.testing.suite.junit import Case, Suite, cases_of, number_duplicates
-from orchestrator.text.errors import PARKED, RESOURCES, BadInput, NotRunError
-from orchestrator.text.failures import exit_code_and_message
-from orchestrator.text.owned import lock_folder
-from orchestrator.text.readable import changes_text
-from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.numbers import facts_of
-from orchestrator.verdict.summary import Summary, summarize
 
 CLAIMING = Lock()
 POLL_INTERVAL = 0.2

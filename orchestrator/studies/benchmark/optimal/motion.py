@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array, Indices
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 
 STATES, INPUTS = 5, 2
 STEPS_PER_INTERVAL = 10

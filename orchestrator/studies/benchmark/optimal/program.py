@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import coo_array, csr_array
 
-from orchestrator.cosim.fmu_instance import Array, Indices
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 from orchestrator.studies.benchmark.optimal.motion import (
     INPUTS,
     STATES,

@@ -10,15 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.obstacle_map import obstacles_of_map
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.inputs.scenario.obstacle_map import obstacles_of_map
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.studies.benchmark.optimal.motion import INPUTS, STATES, MotionLimits, TimedMotion, drive_through
 from orchestrator.studies.benchmark.optimal.search import optimize
-from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.polygons import polygon_clearances
 
 WANTED_INTERVAL = 0.4
 """Wanted duration of an interval [s]."""

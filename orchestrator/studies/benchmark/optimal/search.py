@@ -6,7 +6,7 @@ correction keeps steps along curved constraints from being refused. The result i
 
 import numpy as np
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.benchmark.optimal.motion import MotionLimits, TimedMotion, integrate_motion
 from orchestrator.studies.benchmark.optimal.program import (
     CLEARANCE_PRICE,

@@ -104,7 +104,7 @@ class Situation {
     return found;
   }
 
-  // What stands there all the time as the map of a controller that has one: orchestrator/scenario/polygons.py.
+  // What stands there all the time as the map of a controller that has one: orchestrator/inputs/scenario/polygons.py.
   tellMap(found) {
     const stays = (box) => box.length > 0 && box.appear_at === 0 && box.disappear_at >= 1e9 && box.speed_x === 0 && box.speed_y === 0;
     const corners = (box) => [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => moved([box.x, box.y, box.heading], 0.5 * a * box.length, 0.5 * b * box.width));

@@ -1,4 +1,4 @@
-// The judge in the page: the numbers of a run, its checks and its outcome, as orchestrator/verdict has them.
+// The judge in the page: the numbers of a run, its checks and its outcome, as orchestrator/evaluation/verdict has them.
 
 const MARGIN = {
   max: (value, limit) => limit - value,
@@ -76,7 +76,7 @@ function numbersOf(row, situation, table) {
   return found;
 }
 
-// Whether there is anything to touch: orchestrator/verdict/contact.py.
+// Whether there is anything to touch: orchestrator/evaluation/verdict/contact.py.
 const hasScene = (situation) => situation.data.obstacles.length + situation.kerbs.length > 0 || situation.rows("scene.boxes", BOX).some((box) => box.length > 0);
 
 // Each requirement that is asked of the run, and how it stands against it.
@@ -114,7 +114,7 @@ function whyNot(speed, missed, still) {
   return parts.join("; ");
 }
 
-// How a run came out, and why: the words of orchestrator/verdict/outcome.py.
+// How a run came out, and why: the words of orchestrator/evaluation/verdict/outcome.py.
 function outcomeOf(row, checks, situation) {
   const { ending, success, missed, measures } = situation.data;
   const last = (signal) => row[HEAD + measures.findIndex(([how, name, when]) => how === "last" && name === signal && !when)];

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parking_world.scene import has_bin, overhang_of
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.numbers import Metric
-from orchestrator.verdict.outcome import BEYOND
 
 MOVING_SPEED = 0.05
 """A car no faster [m/s] stands."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parking_world.factors import NONE, PARKED_CARS, RACK, WALL
 from orchestrator.studies.parking.world import scene as world
 from orchestrator.studies.parking.world.factors import NO_SENSOR

@@ -6,9 +6,11 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table as Printed
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import library_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.confidence import percent_interval
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import console
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS
 from orchestrator.studies.parking.parking_world.factors import FACTORS
 from orchestrator.studies.parking.parking_world.outcome import (
@@ -32,8 +34,6 @@ from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Seeds, Space
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.confidence import percent_interval
 
 APA_SYSTEM = 5
 VALET_SYSTEM = 7

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from controller_fmu.apa.params import SearchParams
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
 from orchestrator.studies.parking.world.scene import WHEEL, WITH_KERB, crosses_slot
 from orchestrator.studies.sweep.study.study import Columns
-from orchestrator.verdict.numbers import Metric
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 COLUMNS = {

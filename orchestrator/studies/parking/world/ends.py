@@ -10,8 +10,12 @@ import numpy as np
 from controller_fmu.apa.chart import Mode
 from modelkit.geometry import Box, boxes_gap, line_box, outline
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import Requirement, library_requirements
+from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.evaluation.verdict.standing import outline_margin
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world.asked import COLUMNS, HEARD, feasibility_columns
@@ -19,10 +23,6 @@ from orchestrator.studies.parking.world.factors import NOBODY
 from orchestrator.studies.parking.world.scene import THINGS, WHEEL
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Objective
-from orchestrator.verdict.measures import Instants, Measure
-from orchestrator.verdict.numbers import Metric
-from orchestrator.verdict.outcome import BEYOND
-from orchestrator.verdict.standing import outline_margin
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
 TOUCHING = Instants("vehicle.contact", (1,))

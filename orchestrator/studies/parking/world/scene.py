@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import Car, car_length
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.car import car_parameters
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODY, CARS, ISO
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY, STEPS
 from orchestrator.studies.sweep.study.space import Seeds

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table as Printed
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.requirements import Requirement, library_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.evaluation.verdict.confidence import percent_interval
+from orchestrator.inputs.scenario.fault import Fault
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
+from orchestrator.inputs.text.console import console
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS, gbt_limits
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
@@ -35,8 +37,6 @@ from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Factor, Seeds, Space
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-from orchestrator.text.console import console
-from orchestrator.verdict.confidence import percent_interval
 
 STOP_TIME = 150.0
 BODY_STEP = 0.0025

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.scenario.scenario import DONE, MISSED, Scenario
+from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.scenario import DONE, MISSED, Scenario
 from orchestrator.studies.sweep.job import Job, chunk_scenario
 from orchestrator.studies.sweep.page.statistics import (
     Map,

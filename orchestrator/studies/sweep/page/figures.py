@@ -6,9 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.page.statistics import Axis, Map
-from orchestrator.verdict.confidence import wilson
 
 WIDTH, HEIGHT = 540.0, 330.0
 LEFT, RIGHT, TOP, BOTTOM = 84.0, 22.0, 8.0, 44.0

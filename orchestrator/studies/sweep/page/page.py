@@ -11,8 +11,10 @@ import numpy as np
 import yaml
 
 from fmus.files import write_whole
-from orchestrator.report.page import still_page
-from orchestrator.scenario.scenario import DONE, MISSED
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.inputs.scenario.scenario import DONE, MISSED
+from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
+from orchestrator.presentation.report.page import still_page
 from orchestrator.studies.sweep.page.explorer import explorer_data
 from orchestrator.studies.sweep.page.figures import histogram, scale_bar, success_map
 from orchestrator.studies.sweep.page.statistics import (
@@ -28,8 +30,6 @@ from orchestrator.studies.sweep.page.statistics import (
 )
 from orchestrator.studies.sweep.table import Table
 from orchestrator.studies.sweep.verdict import OUTCOMES, RESULTS
-from orchestrator.text.quantities import RAD_PER_DEGREE
-from orchestrator.verdict.confidence import wilson
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>

@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from orchestrator.drawing.save import save
+from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.sweep.page.figures import axis_name
 from orchestrator.studies.sweep.page.statistics import Map, maps, word
 from orchestrator.studies.sweep.table import Table

@@ -7,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.scenario import DONE, SUCCESS, Scenario
+from orchestrator.evaluation.verdict.conditions import CONDITIONS
+from orchestrator.evaluation.verdict.confidence import wilson
+from orchestrator.evaluation.verdict.limit_text import requirement_text
+from orchestrator.inputs.scenario.scenario import DONE, SUCCESS, Scenario
+from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
+from orchestrator.inputs.text.readable import readable
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.study.study_file import Axes
 from orchestrator.studies.sweep.table import Table
 from orchestrator.studies.sweep.verdict import RESULTS
-from orchestrator.text.quantities import RAD_PER_DEGREE
-from orchestrator.text.readable import readable
-from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import requirement_text
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""

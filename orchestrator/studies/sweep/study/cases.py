@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from modelkit.variables import variables
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import SCENARIO_FIELDS, TRUE_FIELDS, TRUE_OWNERS, Field, find_field
 from orchestrator.studies.sweep.study.design import Design
 

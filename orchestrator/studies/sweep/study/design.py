@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import Field
 
 

@@ -6,17 +6,17 @@ from typing import Any
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.load_scenario import requirements_of
-from orchestrator.scenario.requirements import Requirement
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.inputs.scenario.load_scenario import requirements_of
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.quantities import scalar
 from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
 from orchestrator.studies.sweep.fields import SCENARIO_FIELDS
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.sampling import make_design
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.study.study_file import MOST_RUNS, Runs, StudyFile, load_study
-from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import scalar
-from orchestrator.verdict.measures import Measure
 
 PROBE_SEED = 1_000_003
 """A seed that no scenario has, to find out what follows the seed."""

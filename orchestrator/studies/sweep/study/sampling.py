@@ -13,14 +13,14 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from modelkit.variables import Variable
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import LONGEST_STEP, Scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import LONGEST_STEP, Scenario
+from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.quantities import number, scalar
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import Field, find_field
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.study_file import MOST_RUNS, Distribution, Range, Samples, StudyFile
-from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import number, scalar
 
 MOST_NUMBERS = 500_000_000
 """4 GB."""

@@ -4,13 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.fmu_instance import Array
-from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.evaluation.verdict.measures import Measure
+from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Space
-from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import Metric
 
 Columns = Mapping[str, Any]
 """Columns of a table by name, as arrays."""

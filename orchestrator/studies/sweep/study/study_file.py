@@ -6,9 +6,9 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.scenario.scenario import Name
-from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.yaml_file import explain, read_mapping
+from orchestrator.inputs.scenario.scenario import Name
+from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.yaml_file import explain, read_mapping
 
 MOST_RUNS = 100_000_000
 SHIPPED_STUDIES = Path(__file__).parents[3] / "studies"

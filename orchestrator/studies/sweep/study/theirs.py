@@ -5,12 +5,12 @@ from pathlib import Path
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.model_description import ports_of, read_description
-from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, ImportedFmus, parameters_of, sha256_of
 from orchestrator.session.session import Messages, make_instances
-from orchestrator.system.assemble import elaborate
+from orchestrator.simulation.cosim.model_description import ports_of, read_description
+from orchestrator.simulation.system.assemble import elaborate
 
 
 def files_of(scenario: Scenario) -> Files:

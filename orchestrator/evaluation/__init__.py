@@ -1,0 +1,1 @@
+"""The evaluation of recorded runs: ground truth, metrics, requirements, outcomes, comparison."""

@@ -1,0 +1,1 @@
+"""Views of runs for people and tools: log, figures, replay page, export."""

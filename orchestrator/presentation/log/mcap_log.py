@@ -1,0 +1,283 @@
+"""The log of a run: every exchange of every instance, parameters, pictures and words, in one MCAP file.
+
+Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
+``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
+(Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
+the file depends on the clock on the wall, so the same run gives the same bytes.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from numpy.typing import NDArray
+
+from modelkit.signal import Role
+from modelkit.variables import Variable
+from orchestrator.evaluation.verdict.geometry import (
+    ON_ROAD,
+    PLANNED,
+    CarOutline,
+    boxes,
+    edges,
+    kerbs,
+    sample_path,
+    slot_box,
+    vehicle_parameters,
+)
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.presentation.drawing import scene
+from orchestrator.presentation.log.line import MAX_LINES, Line, line_of
+from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
+from orchestrator.presentation.log.protobuf_rows import Encoder
+from orchestrator.presentation.log.read_log import VARIABLES, with_checksum
+from orchestrator.presentation.log.schema import PACKAGE, descriptor_set, file_descriptor
+from orchestrator.presentation.log.sink import Sink
+from orchestrator.simulation.cosim.algorithm import Termination
+from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
+from orchestrator.simulation.cosim.recording import to_json
+from orchestrator.simulation.cosim.signal_blocks import Times
+
+SCENE_PERIOD_NS = 50_000_000
+TRAIL_PERIOD_NS = 1_000_000_000
+TRAIL_STEP_NS = 200_000_000
+TRAIL_POSES = 100
+MAX_TRAIL_POSES = 20_000
+"""Kept of a run of any length; the first hour has fewer."""
+AXES = ("x", "y", "heading")
+
+
+class _InstanceChannel:
+    """One channel for all inputs and outputs of an instance; ``columns``: its inputs, its outputs in a row of all."""
+
+    def __init__(self, file: Sink, instance: FmuInstance, columns: Sequence[slice]) -> None:
+        variables = [*instance.outputs.variables, *instance.inputs.variables]
+        notes = ["local" if Role.LOCAL in item.roles else "output" for item in instance.outputs.variables]
+        notes += ["input"] * len(instance.inputs.names)
+        self._channel = add_channel(file, f"/{instance.name}", instance.name.title().replace("_", ""), variables, notes)
+        self._encoder = Encoder(variables)
+        self._file = file
+        self._inputs, self._outputs = columns
+        self.size = self._encoder.size
+
+    def write(self, times: NDArray[np.int64], rows: Array) -> None:
+        """Hand one message for each of ``times`` to the file."""
+        seen = np.concatenate([rows[:, self._outputs], rows[:, self._inputs]], axis=1)
+        self._file.write_rows(self._channel, times, self._encoder.rows(seen))
+
+
+class McapLog:
+    """Observer that writes the log to a file, or to whoever looks on."""
+
+    def __init__(
+        self, to: Path | Sink, instances: Sequence[FmuInstance], scenario: Scenario, info: dict[str, Any]
+    ) -> None:
+        self._file: Sink = McapFile(to) if isinstance(to, Path) else to
+        self._file.metadata("apa", with_checksum(info))
+        self.lines: list[Line] = []
+        """Of ``/log``."""
+        places = places_of(instances)
+        self._channels = [
+            _InstanceChannel(self._file, instance, places[2 * k : 2 * k + 2]) for k, instance in enumerate(instances)
+        ]
+        self._log = self._file.add_channel("/log", Log)
+        for instance in instances:
+            self._write_parameters(instance)
+        self._pictures: list[_Pictures] = []
+        if _frame_columns(instances):
+            self._pictures.append(_Pictures(self._file, instances, scenario))
+        size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
+        rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        self.rows_per_chunk = rows
+        self._values = all_values(instances)
+        self._rows = np.empty((rows, len(self._values)))
+        self._times = np.empty(rows, dtype=np.int64)
+        self._count = 0
+        self._file.flush()
+
+    def on_communication_point(self, t_ns: int) -> None:
+        """Keep a row; a chunk's worth of them goes to the file at once."""
+        for pictures in self._pictures:
+            pictures.observe_rows(np.array([t_ns]), self._values[None, :])
+        self._times[self._count] = t_ns
+        self._rows[self._count] = self._values
+        self._count += 1
+        if self._count == len(self._times):
+            self._write_rows()
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Keep many rows; each chunk's worth of them goes to the file at once."""
+        for pictures in self._pictures:
+            pictures.observe_rows(t_ns, rows)
+        begin = 0
+        while begin < len(t_ns):
+            end = min(len(t_ns), begin + len(self._times) - self._count)
+            filled = self._count + end - begin
+            self._times[self._count : filled], self._rows[self._count : filled] = t_ns[begin:end], rows[begin:end]
+            self._count, begin = filled, end
+            if filled == len(self._times):
+                self._write_rows()
+
+    def say(self, t_ns: int, level: int, name: str, text: str) -> None:
+        """Write one line to ``/log``."""
+        if self._file.open:
+            line = Log(timestamp=scene.stamp(t_ns), level=level, message=text, name=name)  # type: ignore[arg-type]
+            self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
+            if len(self.lines) < MAX_LINES:
+                self.lines.append(line_of(t_ns, level, name, text))
+
+    def discard(self) -> None:
+        """Leave no file: nothing has run."""
+        if isinstance(self._file, McapFile):
+            self._file.discard()
+
+    def on_terminate(self, end: Termination) -> None:
+        """Write how the run ended and give the file its name."""
+        self._write_rows()
+        for pictures in self._pictures:
+            pictures.on_terminate(end.t_ns)
+        self._file.metadata("end", with_checksum({"reason": end.reason, "t_ns": end.t_ns}))
+        self._file.close()
+
+    def _write_rows(self) -> None:
+        if self._count:
+            for channel in self._channels:
+                channel.write(self._times[: self._count], self._rows[: self._count])
+        self._count = 0
+        self._file.flush()
+
+    def _write_parameters(self, instance: FmuInstance) -> None:
+        ports: Ports = instance.parameters
+        notes = ["parameter"] * len(ports.names)
+        message = instance.name.title().replace("_", "") + "Parameters"
+        channel = add_channel(self._file, f"/{instance.name}/parameters", message, ports.variables, notes)
+        self._file.write(channel, 0, Encoder(ports.variables).encode(ports.values))
+
+
+class _Pictures:
+    """Frames and scene, as far as the instances have the signals for them."""
+
+    def __init__(self, file: Sink, instances: Sequence[FmuInstance], scenario: Scenario) -> None:
+        self._file = file
+        self._drawn = _frame_columns(instances)
+        named = {instance.name: instance for instance in instances}
+        self._controller = named.get("controller")
+        outputs = dict(zip(named, places_of(instances)[1::2], strict=True))
+        self._controller_outputs = outputs.get("controller", slice(0, 0))
+        around = vehicle_parameters(scenario, _values_by_name(named["vehicle"].parameters))
+        self._car = CarOutline.of(around)
+        self._frames = scene.Frames(self._car)
+        self._transforms = file.add_channel("/tf", FrameTransforms)
+        self._scene = file.add_channel("/scene", SceneUpdate)
+        self._path = file.add_channel("/path", SceneUpdate)
+        self._trail = file.add_channel("/trail", PosesInFrame)
+        self._poses: list[bytes] = []
+        self._trail_count, self._trail_stride = 0, 1
+        self._last_period = -1
+        self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
+        self._path_seen: NDArray[np.int64] | None = None
+        slot = slot_box(scenario.slot) if scenario.slot is not None else None
+        target = scenario.target.pose if scenario.target is not None else None
+        self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.obstacles), target)
+        self._changes = self._stage.changes_ns()
+
+    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+        """Draw what is due at these exchanges."""
+        periods = t_ns // SCENE_PERIOD_NS
+        due = np.flatnonzero(periods > np.append(self._last_period, periods[:-1]))
+        self._last_period = int(periods[-1])
+        if not len(due):
+            return
+        times, values = t_ns[due], rows[due]
+        drawn = np.zeros((len(due), len(self._drawn)))
+        known = [place for place, column in enumerate(self._drawn) if column is not None]
+        drawn[:, known] = values[:, [column for column in self._drawn if column is not None]]
+        self._file.write_rows(self._transforms, times, self._frames.rows(times, drawn))
+        for row, time in enumerate(times.tolist()):
+            if self._changes and time >= self._changes[0]:
+                self._draw_stage(time)
+            if time % TRAIL_STEP_NS < SCENE_PERIOD_NS:
+                x, y, heading = drawn[row, :3].tolist()
+                self._add_to_trail(scene.trail_pose((x, y, heading)))
+            if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
+                self._draw_trail(time)
+        self._draw_paths(times, values)
+
+    def _draw_stage(self, t_ns: int) -> None:
+        self._changes = [change for change in self._changes if change > t_ns]
+        still = scene.still_life(t_ns, self._car, self._stage)
+        self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
+
+    def on_terminate(self, t_ns: int) -> None:
+        if self._poses:
+            self._draw_trail(t_ns)
+
+    def _add_to_trail(self, pose: bytes) -> None:
+        """Keep a pose; of a long run every second one, every fourth, and so on."""
+        if self._trail_count % self._trail_stride == 0:
+            self._poses.append(pose)
+        self._trail_count += 1
+        if len(self._poses) > MAX_TRAIL_POSES:
+            del self._poses[1::2]
+            self._trail_stride *= 2
+
+    def _draw_trail(self, t_ns: int) -> None:
+        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
+        self._file.write(self._trail, t_ns, message)
+
+    def _draw_paths(self, t_ns: Times, rows: Array) -> None:
+        """Draw the planned path wherever it changes."""
+        if self._controller is None:
+            return
+        outputs = rows[:, self._controller_outputs]
+        ports = self._controller.outputs
+        road = ports.index.get(ON_ROAD)
+        on_road = outputs[:, road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
+        seen = np.column_stack([outputs[:, self._path_places], on_road]).view(np.int64)
+        before = seen[:1] ^ 1 if self._path_seen is None else self._path_seen
+        changed = (seen != np.vstack([before, seen[:-1]])).any(axis=1)
+        self._path_seen = seen[-1:]
+        for row in np.flatnonzero(changed).tolist():
+            named = dict(zip(ports.names, outputs[row].tolist(), strict=True))
+            points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
+            update = scene.path_update(int(t_ns[row]), points)
+            self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
+
+
+def add_channel(file: Sink, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
+    """Return a new channel whose schema is made from ``variables``."""
+    descriptors = descriptor_set(file_descriptor(message, variables, notes))
+    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
+
+
+def _frame_columns(instances: Sequence[FmuInstance]) -> list[int | None]:
+    """Return where pose, odometry and angle of the front wheels are among all values; empty without a pose.
+
+    The frames are made of them. They are outputs of the vehicle, or inputs of its name. Absent odometry is the pose.
+    """
+    parts = places_of(instances)
+    columns: dict[str, int] = {}
+    for number, instance in enumerate(instances):
+        if instance.name == "vehicle":
+            for ports, part in ((instance.inputs, parts[2 * number]), (instance.outputs, parts[2 * number + 1])):
+                columns |= {name: part.start + place for place, name in enumerate(ports.names)}
+    poses = [columns.get(f"pose.{axis}") for axis in AXES]
+    if None in poses:
+        return []
+    odometry = [columns.get(f"odometry.{axis}", pose) for axis, pose in zip(AXES, poses, strict=True)]
+    return [*poses, *odometry, columns.get("front_wheel_angle")]
+
+
+def _values_by_name(ports: Ports) -> dict[str, float]:
+    return dict(zip(ports.names, ports.values.tolist(), strict=True))
+
+
+def _path_places(ports: Ports) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return where the outputs are that the planned path is drawn from (see ``geometry.sample_path``)."""
+    chosen = [place for place, name in enumerate(ports.names) if PLANNED.match(name)]
+    return np.array(chosen, dtype=np.intp)

@@ -41,7 +41,7 @@ def counts(*decided: Any) -> Any:
 def test_a_row_decides_unless_one_above_it_was_taken() -> None:
     both, switched = 0b11, 0b10
     found = counts((0, both), (0, switched), (0, 0), (1, 0))
-    assert [(row.source, row.count_taken, row.refused) for row in found.rows] == [
+    assert [(row.source, row.taken, row.refused) for row in found.rows] == [
         ("any state", 1, 3),
         ("OFF", 1, 1),
         ("ON", 0, 1),
@@ -51,7 +51,7 @@ def test_a_row_decides_unless_one_above_it_was_taken() -> None:
 
 
 def test_a_row_for_any_state_does_not_leave_an_end() -> None:
-    assert [row.count_taken + row.refused for row in counts((2, 0b11)).rows] == [0, 0, 0]
+    assert [row.taken + row.refused for row in counts((2, 0b11)).rows] == [0, 0, 0]
 
 
 def test_every_chart_has_one_function_that_decides() -> None:

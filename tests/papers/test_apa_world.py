@@ -148,7 +148,7 @@ def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() ->
 
     def said(**factors: float) -> tuple[float, float]:
         found = feasibility_columns({name: np.array([value]) for name, value in {**nominal, **factors}.items()})
-        return float(found["valid"][0]), float(found["feasibility_columns"][0])
+        return float(found["valid"][0]), float(found["asked"][0])
 
     stop = {"kind": 1, "behind": 2, "kerb_height": 0.08}
     assert said() == (1.0, 1.0)

@@ -17,7 +17,7 @@ class RowCoverage(NamedTuple):
     source: str
     guard: str
     target: str
-    count_taken: int
+    taken: int
     """Samples at which it was taken: its guard true while it decides."""
     refused: int
     """Samples at which it could have been: its guard false while it decides."""
@@ -53,7 +53,7 @@ class ChartCoverage(NamedTuple):
     @property
     def count_taken(self) -> int:
         """Transitions that were taken."""
-        return sum(row.count_taken > 0 for row in self.rows)
+        return sum(row.taken > 0 for row in self.rows)
 
     @property
     def outcomes(self) -> int:

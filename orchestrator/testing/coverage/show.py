@@ -41,7 +41,7 @@ def coverage_tables(found: Coverage) -> list[Table]:
         )
         charts.add_row(f"{chart.name} ({chart.signal})" if chart.signal else chart.name, *counts)
         for row in chart.beside:
-            charts.add_row(f"  not listed: {row.words}", "", str(row.count_taken), "")
+            charts.add_row(f"  not listed: {row.words}", "", str(row.taken), "")
     folders = _table("model code", "branches", "outcomes")
     for folder, branches in _by_folder(found.branches).items():
         seen = sum(branch.outcomes for branch in branches)
@@ -122,7 +122,7 @@ def _missing(branch: Branch) -> str:
 def _chart(chart: ChartCoverage) -> str:
     arcs = [(row.source, row.target, row.guard.lower().replace("_", " ")) for row in chart.rows]
     arcs += [(row.source, row.target, "not listed") for row in chart.beside]
-    missed = {(row.source, row.target) for row in chart.rows if not row.count_taken}
+    missed = {(row.source, row.target) for row in chart.rows if not row.taken}
     unvisited = {name for name, count in chart.states.items() if not count}
     svg = chart_svg(arcs, list(chart.states), missed, unvisited)
     transitions = (
@@ -143,6 +143,6 @@ def _chart(chart: ChartCoverage) -> str:
 
 
 def _row(row: RowCoverage, has_guard: bool, note: str = "") -> str:
-    kind = "missed" if not row.count_taken else "half" if note or (has_guard and not row.refused) else ""
+    kind = "missed" if not row.taken else "half" if note or (has_guard and not row.refused) else ""
     refused = f"<td>{row.refused}</td>" if has_guard else f"<td>{note}</td>"
-    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.count_taken}</td>{refused}</tr>'
+    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.taken}</td>{refused}</tr>'

@@ -62,10 +62,10 @@ TABLE = """\
 | `x / 0.0`, `n / 0`, `math.exp(1e3)` | infinite or NaN |
 | `math.sqrt(-1.0)`, `math.log(0.0)`, `math.sin(inf)`, `math.acos(1.5)` | infinite or NaN |
 | `n // 0`, `n % 0` | 0 |
-| `int(x)`, `math.floor(x)`, `math.ceil(x)`, `round(x)` of NaN or infinite | 0; the nearest integer of 64 bits |
-| `xs[i]` out of range | the nearest item; memory outside is never read |
+| `int(x)`, `math.floor(x)`, `math.ceil(x)`, `round(x)` of NaN; of infinite | 0; the nearest 64-bit integer |
+| `xs[i]` out of range | the nearest item; C never reads memory outside |
 | a negative shift | 0 |
-| an integer that its column of a store cannot hold | the nearest that it can |
+| an integer out of the range of its store column | the nearest value in range |
 """
 
 

@@ -32,7 +32,7 @@ ASSIST = {
 """Clock of the assist -> its limit [s], and the reason."""
 OTHERS = {
     "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
-    "wrong_way": (LIMIT.wrong_direction, Reason.WRONG_DIRECTION),
+    "wrong_direction_ns": (LIMIT.wrong_direction, Reason.WRONG_DIRECTION),
     "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
     "waiting": (LIMIT.driver_response_timeout, Reason.NOT_MOVING),
 }

@@ -89,9 +89,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> list[ChartCoverage]:
 
 
 def test_every_transition_is_taken_but_those_with_a_reason(found: list[ChartCoverage]) -> None:
-    missing = {
-        (short(chart.name), row.source, row.guard) for chart in found for row in chart.rows if not row.taken
-    }
+    missing = {(short(chart.name), row.source, row.guard) for chart in found for row in chart.rows if not row.taken}
     assert missing == set(NEVER_TAKEN)
 
 

@@ -49,7 +49,7 @@ NOT_RUN = {
 """How a command begins that is not run here -> why."""
 LONG_PAGES = (
     *("catalogue", "index", "parking", "parking-planning", "parking-results", "parking-use", "see-and-drive"),
-    *("studies", "targets", "use-in-your-tool", "vehicle"),
+    *("parking-benchmarks", "studies", "targets", "third-party-fmus", "use-in-your-tool", "vehicle", "write-a-model"),
 )
 """Pages whose commands drive, sweep and compile for minutes what tests of the command drive in small. On each change
 the words of their commands are checked, `make release` runs them."""

@@ -12,6 +12,8 @@ from modelkit.vocabulary import Pose
 
 NODES = (-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683, 0.906179845938664)
 WEIGHTS = (0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189)
+MIN_TURN = 1e-300
+"""A product with a smaller turn [rad] loses digits; the chord is as long as the arc."""
 
 
 def advance(pose: Pose, direction: float, length: float, k0: float, k1: float) -> Pose:
@@ -21,7 +23,7 @@ def advance(pose: Pose, direction: float, length: float, k0: float, k1: float) -
     if k0 == k1:
         half = 0.5 * turn
         chord = direction * length
-        if half != 0.0:
+        if abs(half) > MIN_TURN:
             chord = chord * math.sin(half) / half
         return Pose(pose.x + chord * math.cos(h + half), pose.y + chord * math.sin(h + half), h + turn)
     x = 0.0

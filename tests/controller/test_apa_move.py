@@ -4,7 +4,7 @@ import itertools
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -17,6 +17,7 @@ CURVATURE = st.floats(-0.25, 0.25)
 
 
 @given(st.floats(0.01, 3.0), CURVATURE, CURVATURE, st.sampled_from([1.0, -1.0]), st.floats(-3.0, 3.0))
+@example(length=1.5, k0=5e-324, k1=5e-324, direction=1.0, heading=0.0)
 def test_a_piece_is_the_integral_of_its_curvature(
     length: float, k0: float, k1: float, direction: float, heading: float
 ) -> None:

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 from controller_fmu.registry import APART, MODEL, SYSTEM_MODELS, SYSTEMS, System
 
 if TYPE_CHECKING:
-    from controller_fmu.parking import MODEL as PARKING
-    from controller_fmu.policy import MODEL as POLICY
-    from controller_fmu.valet import MODEL as VALET
+    from controller_fmu.parking.standalone import MODEL as PARKING
+    from controller_fmu.policy.standalone import MODEL as POLICY
+    from controller_fmu.valet.standalone import MODEL as VALET
 
 __all__ = ["APART", "MODEL", "PARKING", "POLICY", "SYSTEMS", "SYSTEM_MODELS", "VALET", "System"]
 

@@ -57,7 +57,7 @@ class StandaloneModels(Mapping[IntEnum, Model]):
 
 
 def _valet() -> Model:
-    from controller_fmu.valet import MODEL
+    from controller_fmu.valet.standalone import MODEL
 
     return MODEL
 
@@ -69,13 +69,13 @@ def _valet_large() -> Model:
 
 
 def _parking() -> Model:
-    from controller_fmu.parking import MODEL
+    from controller_fmu.parking.standalone import MODEL
 
     return MODEL
 
 
 def _policy() -> Model:
-    from controller_fmu.policy import MODEL
+    from controller_fmu.policy.standalone import MODEL
 
     return MODEL
 

@@ -20,6 +20,8 @@ from vehicle_fmu import MODEL as VEHICLE
 
 MODELS: dict[str, Model] = {"vehicle": VEHICLE, "controller": CONTROLLER}
 SCENARIOS = ("guo2015-case4", "guo2015-case1", "zhang2022-double-track", "hsic", "preview", "apa-parallel")
+EACH_CHANGE = ("guo2015-case4", "zhang2022-double-track", "apa-parallel-real")
+"""Scenarios of which each change compares the start; ``make release`` compares all."""
 FIRST_ECHO = ("ultrasonic.noise", "ultrasonic.dropout")
 STEP_NS = 10_000_000
 step_vehicle, step_controller = VEHICLE.stepper(None), CONTROLLER.stepper(None)
@@ -113,7 +115,13 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=list(MODELS))
-@pytest.mark.parametrize("name", ["guo2015-case4", "zhang2022-double-track", "apa-parallel-real"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release)
+        for name in (*SCENARIOS, "apa-parallel-real")
+    ],
+)
 def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model: Any, name: Any) -> None:
     """So a value set before the first step and one set before initialization do the same, but for the first echo."""
     params = constants(load_scenario(name, []))[next(key for key, item in MODELS.items() if item is model)]

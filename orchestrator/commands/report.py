@@ -9,7 +9,7 @@ from orchestrator.inputs.text.console import say, working
 from orchestrator.inputs.text.errors import PARKED, BadInput
 from orchestrator.inputs.text.owned import lock_with
 from orchestrator.presentation.log.messages import read_messages
-from orchestrator.presentation.log.read_log import log_file, read_log
+from orchestrator.presentation.log.read_log import log_file, log_name, read_log
 from orchestrator.presentation.report.replay import write_replay
 
 EXAMPLES = """examples:
@@ -86,7 +86,7 @@ def _write_figure(arguments: argparse.Namespace) -> int:
     check_figure(arguments.figure)
     if not 10 <= arguments.dpi <= 2400:
         raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
-    runs = [(log.stem if log.stem != "run" else log.parent.name, decimate(read_log(log))) for log in arguments.log]
+    runs = [(log_name(log), decimate(read_log(log))) for log in arguments.log]
     figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width or "17cm"), arguments.style)
     save_figure(figure, arguments.figure, arguments.dpi, arguments.style)
     print(arguments.figure)

@@ -11,7 +11,7 @@ from orchestrator.evaluation.comparison.compare import Difference
 from orchestrator.evaluation.verdict.judge import Check
 from orchestrator.evaluation.verdict.limit_text import limit_text
 from orchestrator.evaluation.verdict.summary import Final, Summary
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 from orchestrator.inputs.text.readable import changes_text, manoeuvres_text, precise, readable
 
@@ -67,10 +67,7 @@ ALLOWED = "allowed: "
 
 def checks_table(checks: list[Check], out: Console) -> Table:
     """Return the checks as a table."""
-    table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
-    for name, justify in (("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("", "left")):
-        table.add_column(name, justify=justify)  # type: ignore[arg-type]
-    table.add_column("source")
+    table = result_table(out, ("check", "value", "limit", "margin", "", "source"), ("check", "", "source"))
     for check in checks:
         verdict = "[green]pass[/]" if check.passed else "[red]FAIL[/]" if check.required else "[yellow]fail[/]"
         if check.source.startswith(ALLOWED) and not check.passed:
@@ -90,9 +87,7 @@ def checks_table(checks: list[Check], out: Console) -> Table:
 
 def differences_table(rows: list[Difference], out: Console) -> Table:
     """Return signals that differ between two runs as a table."""
-    table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
-    for name in ("signal", "largest", "tolerance", "at", "first exceedance", ""):
-        table.add_column(name, justify="left" if name in ("signal", "") else "right")
+    table = result_table(out, ("signal", "largest", "tolerance", "at", "first exceedance", ""), ("signal", ""))
     for row in rows:
         largest = "" if row.largest is None else precise(row.largest, row.unit)
         times = ["" if t is None else f"{t:.3f} s" for t in (row.t_largest, row.first)]

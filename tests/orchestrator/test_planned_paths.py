@@ -1,12 +1,14 @@
 """The planned path and the points of every system are outputs: the log, the page and the pictures have them."""
 
+import math
+
 import numpy as np
 import pytest
 
 from controller_fmu.registry import MODEL
 from modelkit.signal import Role
 from modelkit.variables import variables
-from orchestrator.evaluation.verdict.geometry import key_points, sample_path
+from orchestrator.evaluation.verdict.geometry import find_changes, key_points, sample_path
 from orchestrator.presentation.drawing.seen import path_plans, path_points
 from orchestrator.simulation.cosim.recording import Recording
 from tests.native_runs import native_recording
@@ -91,3 +93,10 @@ def test_planned_paths_are_local_outputs() -> None:
     names = {item.name: item for item in variables(MODEL.outputs)}
     for name in ("guo2015.q1.x", "hsic.p4.y", "zhang2022.plan.final_time", "preview.la1.x", "adaptive.move.end"):
         assert Role.LOCAL in names[name].roles
+
+
+def test_rows_that_change_are_found_across_blocks() -> None:
+    values = np.array([[0.0, math.nan], [0.0, math.nan], [1.0, math.nan], [1.0, 2.0]])
+    assert find_changes(values).tolist() == [0, 2, 3]
+    assert find_changes(values, values[0]).tolist() == [2, 3]
+    assert find_changes(values, values[-1]).tolist() == [0, 2, 3]

@@ -8,7 +8,7 @@ from orchestrator.session.options import add_foreign_arguments, add_output_argum
 from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 
 DEFAULT_PORT = 8765
-"""Where Foxglove looks for a stream if nothing else is said."""
+"""Default port of Foxglove's streams."""
 EXAMPLES = """examples:
   apa run guo2015-case4
   apa run guo2015-case4 --set vehicle.body=double_track --set "vehicle.driver.reaction_delay=300 ms" --out runs/late

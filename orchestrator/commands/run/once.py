@@ -65,7 +65,7 @@ def execute(
         is_drawn = is_shown(ran.recording) and not interrupted and not arguments.no_page
         if is_drawn and beside is not None:
             beside.begin(overview_of(ran.recording, summary, scenario))
-        _tell(arguments, text, summary, scenario)
+        _print_result(arguments, text, summary, scenario)
         if not interrupted and not arguments.no_page:
             _write_pages(out, ran, summary, scenario, foreign)
         if is_drawn and beside is not None:
@@ -79,8 +79,8 @@ def execute(
     return Done(ran.recording, code)
 
 
-def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: Scenario) -> None:
-    """Print summary.json, or what it says as a table."""
+def _print_result(arguments: argparse.Namespace, text: str, summary: Summary, scenario: Scenario) -> None:
+    """Print summary.json, or its table."""
     if arguments.json:
         print(text)
         return
@@ -90,7 +90,7 @@ def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: 
 
 
 def _write_pages(out: Path, ran: SimulationResult, summary: Summary, scenario: Scenario, foreign: ImportedFmus) -> None:
-    """Write the page that is driven, and the replay page if there is something to show."""
+    """Write the page that is driven, and the replay page if the run has an instant."""
     with verdict_stands(str(out / LIVE)):
         _write_live(out / LIVE, scenario, foreign)
     if is_shown(ran.recording):
@@ -98,7 +98,7 @@ def _write_pages(out: Path, ran: SimulationResult, summary: Summary, scenario: S
 
 
 def _write_live(path: Path, scenario: Scenario, foreign: ImportedFmus) -> None:
-    """Write the page on which the scenario is driven; none for somebody else's FMUs, or where nothing compiles C."""
+    """Write the page on which the scenario is driven; none for imported FMUs, or without a C compiler."""
     from fmus.native.web import can_build
 
     if can_build() and not foreign.files:

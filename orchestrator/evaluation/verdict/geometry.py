@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from orchestrator.evaluation.verdict.frame import pose_at
-from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 
 if TYPE_CHECKING:
     from orchestrator.inputs.scenario.scenario import Scenario, Slot
@@ -207,6 +207,18 @@ def is_planned(signals: Mapping[str, Array]) -> Array:
         if name.endswith(("path.segments[1].length", "move.direction", "plan.side", "points[1].x", ON_ROAD))
     ]
     return np.any(marks, axis=0) if marks else np.empty(0, dtype=bool)
+
+
+def find_changes(values: Array, before: Array | None = None) -> Indices:
+    """Return the rows of ``values`` (n, signals) that differ from the row above, or the first one from ``before``.
+
+    Without ``before`` the first row counts as changed. Not a number equals itself.
+    """
+    bits = np.asarray(values, dtype=np.float64).view(np.int64)
+    changed = np.empty(len(bits), dtype=bool)
+    changed[:1] = before is None or (bits[:1] != np.asarray(before, dtype=np.float64).view(np.int64)).any()
+    changed[1:] = (bits[1:] != bits[:-1]).any(axis=1)
+    return np.flatnonzero(changed)
 
 
 def key_points(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:

@@ -3,7 +3,7 @@
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, Self, TextIO
@@ -13,6 +13,7 @@ from orchestrator.inputs.text.printable import printable
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress, ProgressColumn
+    from rich.table import Table
 
 QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 """Whether only errors are wanted."""
@@ -39,6 +40,16 @@ def console(stream: TextIO | None = None) -> "Console":
     given: Any = stream or sys.stdout
     whole = given.unfiltered if isinstance(given, PrintableStream) else given
     return SafeConsole(file=whole, highlight=False, width=None if whole.isatty() else PIPED_WIDTH)
+
+
+def result_table(screen: "Console", titles: Sequence[str], texts: Sequence[str]) -> "Table":
+    """Return an empty table with a frame on a terminal only; columns to the right, but ``texts`` to the left."""
+    from rich.table import Table
+
+    table = Table(box=Table().box if screen.is_terminal else None, pad_edge=screen.is_terminal)
+    for title in titles:
+        table.add_column(title, justify="left" if title in texts else "right")
+    return table
 
 
 class PrintableStream:

@@ -6,6 +6,7 @@ The car and its wheels are drawn once, each fixed to its own frame; what moves a
 import math
 import re
 import struct
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,18 @@ from google.protobuf.duration_pb2 import Duration
 from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 
-from orchestrator.evaluation.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, Kerb
+from orchestrator.evaluation.verdict.geometry import (
+    WHEEL_RADIUS,
+    WHEEL_WIDTH,
+    Box,
+    CarOutline,
+    Kerb,
+    boxes,
+    edges,
+    kerbs,
+    slot_box,
+)
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 WORLD = "world"
@@ -113,6 +125,16 @@ class Surroundings(NamedTuple):
     obstacles: list[Box]
     kerbs: list[Kerb]
     target: tuple[float, float, float] | None
+
+    @staticmethod
+    def of(scenario: Scenario, vehicle: Mapping[str, float]) -> "Surroundings":
+        """Return those of a scenario; ``vehicle``: flat parameters of the vehicle in it."""
+        return Surroundings(
+            None if scenario.slot is None else slot_box(scenario.slot),
+            boxes(vehicle),
+            kerbs(vehicle) + edges(scenario.obstacles),
+            None if scenario.target is None else scenario.target.pose,
+        )
 
     def changes_ns(self) -> list[int]:
         """Return the times at which an obstacle appears or disappears, and zero, sorted."""

@@ -69,7 +69,7 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
         raise BadInput(missing_package("rerun-sdk", "export")) from None
     name = str(recording.info.get("scenario", {}).get("name", path.stem))
     stream = rr.RecordingStream(f"apa-cosim {name}", recording_id=path.stem)
-    with whole(path) as part, _disk_full_told():
+    with whole(path) as part, _disk_full_error():
         stream.save(str(part), default_blueprint=blueprint(recording))
         _still(rr, stream, recording)
         _moving(rr, stream, recording)
@@ -83,8 +83,8 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
 
 
 @contextmanager
-def _disk_full_told() -> Iterator[None]:
-    """Raise the ``OSError`` that rerun-sdk tells in words only."""
+def _disk_full_error() -> Iterator[None]:
+    """Raise the ``OSError`` of which rerun-sdk reports the text only."""
     try:
         yield
     except RuntimeError as error:
@@ -151,8 +151,8 @@ def _moving(rr: Any, stream: Any, recording: Recording) -> None:
     for row in _rows(recording.t, min(DRIVEN_RATE, MAX_DRIVEN / max(1.0, recording.duration))):
         stream.set_time(TIMELINE, duration=float(recording.t[row]))
         done = rows[rows <= row]
-        way = _flat(np.column_stack([x[done], y[done]]))
-        stream.log("scene/driven", rr.LineStrips2D([way[np.isfinite(way).all(axis=1)]], colors=[[40, 110, 230]]))
+        path = _flat(np.column_stack([x[done], y[done]]))
+        stream.log("scene/driven", rr.LineStrips2D([path[np.isfinite(path).all(axis=1)]], colors=[[40, 110, 230]]))
 
 
 def _curve(rr: Any, stream: Any, recording: Recording, name: str) -> None:

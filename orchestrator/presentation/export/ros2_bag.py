@@ -1,6 +1,6 @@
 """The messages of a run in a bag of ROS 2: frames, poses, paths, ranges, numbers, markers, lines."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,12 +8,9 @@ import numpy as np
 from orchestrator.evaluation.verdict.geometry import (
     PLANNED,
     CarOutline,
-    boxes,
-    edges,
+    find_changes,
     is_planned,
-    kerbs,
     sample_path,
-    slot_box,
     vehicle_parameters,
 )
 from orchestrator.evaluation.verdict.logged import read_logged_run
@@ -66,8 +63,8 @@ class Bag:
             self._write_poses(part, t_ns)
             self._write_ranges(part, t_ns, first)
             planned = self._write_planned(part, t_ns, planned)
-            for row in driven.rows(part, first, is_last):
-                self._write_path(t_ns[row], "/driven_path", driven.points(part, row))
+            for row, points in driven.paths(part, first, is_last):
+                self._write_path(t_ns[row], "/driven_path", points)
         for line in lines:
             self._write_line(line)
 
@@ -114,17 +111,15 @@ class Bag:
                     )
 
     def _write_planned(self, part: Recording, t_ns: list[int], before: Array | None) -> Array | None:
-        """Write the planned path whenever it changes; return what it was made of last."""
+        """Write the planned path whenever it changes; return the latest values of its signals."""
         planned = is_planned(part.signals)
         names = [name for name in part.signals if PLANNED.match(name.removeprefix(CONTROLLER))]
         columns = [part.signals[name] for name in names] + ([planned] if len(planned) else [])
         if not columns or not t_ns:
             return before
         table = np.column_stack(columns)
-        changed = np.append(True, (table[1:] != table[:-1]).any(axis=1))
-        changed[0] = before is None or (table[0] != before).any()
         parameters = part.parameters_of("controller")
-        for row in np.flatnonzero(changed).tolist():
+        for row in find_changes(table, before).tolist():
             points = sample_path(part.values_at("controller", row), parameters=parameters)
             self._write_path(t_ns[row], "/planned_path", points)
         last: Array = table[-1]
@@ -140,7 +135,7 @@ class Bag:
         self.write(t_ns, topic, "nav_msgs/Path", header=header, poses=poses)
 
     def _write_static(self, recording: Recording) -> None:
-        """Write what stands still: frames of the sensors, and markers, anew where an obstacle comes or goes."""
+        """Write frames of the sensors, and markers, those again whenever an obstacle appears or disappears."""
         mounts = [
             self._messages.transform(0, (CAR_FRAME, f"ultrasonic_{number}"), (item["x"], item["y"], item["heading"]))
             for number, item in enumerate(_sensors(recording), start=1)
@@ -149,12 +144,7 @@ class Bag:
             self.write(0, "/tf_static", "tf2_msgs/TFMessage", transforms=mounts)
         scenario = read_logged_run(recording).scenario
         around = vehicle_parameters(scenario, recording.parameters_of("vehicle"))
-        stage = Surroundings(
-            None if scenario.slot is None else slot_box(scenario.slot),
-            boxes(around),
-            kerbs(around) + edges(scenario.obstacles),
-            None if scenario.target is None else scenario.target.pose,
-        )
+        stage = Surroundings.of(scenario, around)
         for t_ns in stage.changes_ns():
             if t_ns <= recording.duration * 1e9:
                 update = still_life(t_ns, CarOutline.of(around), stage)
@@ -204,8 +194,7 @@ def _pose(part: Recording, name: str) -> Array | None:
 
 
 def _sensors(recording: Recording) -> list[dict[str, Any]]:
-    vehicle: Mapping[str, float] = recording.parameters_of("vehicle")
-    return sensors(vehicle, recording.signals)
+    return sensors(recording.parameters_of("vehicle"), recording.signals)
 
 
 class _DrivenPath:
@@ -217,8 +206,8 @@ class _DrivenPath:
         self._points: list[Array] = []
         self._next = 0.0
 
-    def rows(self, part: Recording, first: int, is_last: bool) -> Iterator[int]:
-        """Yield the rows of a part at which the path is written."""
+    def paths(self, part: Recording, first: int, is_last: bool) -> Iterator[tuple[int, Array]]:
+        """Yield rows of a part, and the path until then: the points kept, and the place of the car."""
         pose = _pose(part, "pose")
         if pose is None:
             return
@@ -227,10 +216,4 @@ class _DrivenPath:
                 self._points.append(pose[row, :2])
             if t >= self._next or (is_last and row == part.count - 1):
                 self._next = t + self._period
-                yield row
-
-    def points(self, part: Recording, row: int) -> Array:
-        """Return the path up to a row: the points kept, and where the car is."""
-        pose = _pose(part, "pose")
-        assert pose is not None
-        return np.vstack([*self._points, pose[row, :2]])
+                yield row, np.vstack([*self._points, pose[row, :2]])

@@ -1,9 +1,9 @@
-"""The log of a run: every exchange of every instance, parameters, pictures and words, in one MCAP file.
+"""The log of a run: every exchange of every instance, parameters, pictures and messages, in one MCAP file.
 
 Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
 ``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
 (Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
-the file depends on the clock on the wall, so the same run gives the same bytes.
+the file depends on real time, so the same run gives the same bytes.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,8 @@ from orchestrator.evaluation.verdict.geometry import (
     ON_ROAD,
     PLANNED,
     CarOutline,
-    boxes,
-    edges,
-    kerbs,
+    find_changes,
     sample_path,
-    slot_box,
     vehicle_parameters,
 )
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -72,7 +69,7 @@ class _InstanceChannel:
 
 
 class McapLog:
-    """Observer that writes the log to a file, or to whoever looks on."""
+    """Observer that writes the log to a file, or streams it."""
 
     def __init__(
         self, to: Path | Sink, instances: Sequence[FmuInstance], scenario: Scenario, info: dict[str, Any]
@@ -91,7 +88,7 @@ class McapLog:
         self._pictures: list[_Pictures] = []
         if _frame_columns(instances):
             self._pictures.append(_Pictures(self._file, instances, scenario))
-        size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
+        size = CHUNK_SIZE if isinstance(to, Path) else 0  # a stream has each row at once
         rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
         self._values = all_values(instances)
@@ -102,13 +99,7 @@ class McapLog:
 
     def on_communication_point(self, t_ns: int) -> None:
         """Keep a row; a chunk's worth of them goes to the file at once."""
-        for pictures in self._pictures:
-            pictures.observe_rows(np.array([t_ns]), self._values[None, :])
-        self._times[self._count] = t_ns
-        self._rows[self._count] = self._values
-        self._count += 1
-        if self._count == len(self._times):
-            self._write_rows()
+        self.observe_rows(np.array([t_ns], dtype=np.int64), self._values[None, :])
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:
         """Keep many rows; each chunk's worth of them goes to the file at once."""
@@ -180,10 +171,9 @@ class _Pictures:
         self._trail_count, self._trail_stride = 0, 1
         self._last_period = -1
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
-        self._path_seen: NDArray[np.int64] | None = None
-        slot = slot_box(scenario.slot) if scenario.slot is not None else None
-        target = scenario.target.pose if scenario.target is not None else None
-        self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.obstacles), target)
+        self._path_values: Array | None = None
+        """Latest outputs that the planned path is made of."""
+        self._stage = scene.Surroundings.of(scenario, around)
         self._changes = self._stage.changes_ns()
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:
@@ -238,11 +228,10 @@ class _Pictures:
         ports = self._controller.outputs
         road = ports.index.get(ON_ROAD)
         on_road = outputs[:, road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
-        seen = np.column_stack([outputs[:, self._path_places], on_road]).view(np.int64)
-        before = seen[:1] ^ 1 if self._path_seen is None else self._path_seen
-        changed = (seen != np.vstack([before, seen[:-1]])).any(axis=1)
-        self._path_seen = seen[-1:]
-        for row in np.flatnonzero(changed).tolist():
+        values = np.column_stack([outputs[:, self._path_places], on_road])
+        changes = find_changes(values, self._path_values)
+        self._path_values = values[-1]
+        for row in changes.tolist():
             named = dict(zip(ports.names, outputs[row].tolist(), strict=True))
             points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
             update = scene.path_update(int(t_ns[row]), points)

@@ -174,6 +174,11 @@ def log_file(text: str) -> Path:
     return part if part.is_file() and not whole.is_file() else whole
 
 
+def log_name(log: Path) -> str:
+    """Return the name of a log, or of the folder of its run."""
+    return log.stem if log.stem != "run" else log.resolve().parent.name
+
+
 def read_info(path: Path) -> dict[str, Any]:
     """Return what a log says of its scenario, FMUs, seed and versions; empty if it is no complete log."""
     try:

@@ -14,7 +14,7 @@ from orchestrator.presentation.log.line import Line
 from orchestrator.presentation.report.page import page
 from orchestrator.presentation.report.payload import Arrays
 from orchestrator.presentation.report.plots import plots_of
-from orchestrator.presentation.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
+from orchestrator.presentation.report.replay import KEYS, page_of_limited_size
 from orchestrator.presentation.report.run_data import ribbons_of, run_data
 from orchestrator.presentation.report.still import origin_of
 from orchestrator.simulation.cosim.recording import Recording
@@ -39,13 +39,8 @@ def write_overlay(
     """
     if len(runs) > len(RUNS):
         raise BadInput(f"{len(runs)} runs on one page; there is room for {len(RUNS)}")
-    text = ""
     shown = [decimate(run, _moments(found)) for run in runs]
-    for most in MOST_ROWS:
-        text = _page(shown, runs, words, found, most, names)
-        if len(text.encode()) < LARGEST_PAGE:
-            break
-    write_whole(path, text)
+    write_whole(path, page_of_limited_size(lambda most: _page(shown, runs, words, found, most, names)))
 
 
 def _moments(found: Sequence[Comparison]) -> list[float]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orchestrator.evaluation.verdict.frame import pose_at
-from orchestrator.evaluation.verdict.geometry import PLANNED, is_planned, place, sample_path
+from orchestrator.evaluation.verdict.geometry import PLANNED, find_changes, is_planned, place, sample_path
 from orchestrator.presentation.report.payload import Arrays
 from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 from orchestrator.simulation.cosim.recording import Recording
@@ -26,8 +26,7 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point, most: int = MO
     if not (names or len(planned)) or not len(recording.t):
         return []
     table = np.column_stack([*(recording.signals[name] for name in names), *([planned] if len(planned) else [])])
-    same = (table[1:] == table[:-1]) | (np.isnan(table[1:]) & np.isnan(table[:-1]))
-    changes = np.flatnonzero(~same.all(axis=1)) + 1
+    changes = find_changes(table + 0.0)[1:]  # -0 is 0
     found = []
     parameters = recording.parameters_of("controller")
     for row in [0, *_fewer(changes, recording.t, most)]:

@@ -1,7 +1,7 @@
 """The replay page of one run."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -57,11 +57,17 @@ def replay_page(
     """
     if not recording.count:
         raise BadInput("the run has no instant to show")
-    text = ""
     shown = decimate(recording, [check.t for check in summary.checks])
     whole = recording if shown is not recording else None
+    extras = PageExtras(live, optimal_path)
+    return page_of_limited_size(lambda most: _page(shown, summary, words, most, extras, whole))
+
+
+def page_of_limited_size(page_of: Callable[[int], str]) -> str:
+    """Return the page with the most instants that stays below 1 MB; ``page_of`` makes it with at most so many."""
+    text = ""
     for most in MOST_ROWS:
-        text = _page(shown, summary, words, most, PageExtras(live, optimal_path), whole)
+        text = page_of(most)
         if len(text.encode()) < LARGEST_PAGE:
             break
     return text

@@ -43,7 +43,7 @@ class Manipulator(Protocol):
 
 
 class StopCondition(Protocol):
-    """Says when the run is over before its stop time."""
+    """Ends the run before its stop time."""
 
     def stop_reason(self, t_ns: int) -> str:
         """Return the reason to end now, or an empty string."""
@@ -61,7 +61,7 @@ class Termination(NamedTuple):
     """Why and when a run ended."""
 
     reason: str
-    """``stop_time``, ``interrupted``, ``error: ...`` or what the ending said."""
+    """``stop_time``, ``interrupted``, ``error: ...`` or the reason of the stop condition."""
     t_ns: int
 
 
@@ -108,7 +108,7 @@ class CoSimulation:
         self.stop_ns = stop_ns
         self.decimation = [(decimation or {}).get(instance.name, 1) for instance in instances]
         self.connections = connect(instances) if connections is None else connections
-        """By equal names if nothing else is said."""
+        """By default by equal names."""
         self.manipulators: list[Manipulator] = []
         self.observers: list[Observer] = []
         self.endings: list[StopCondition] = []
@@ -159,7 +159,7 @@ class CoSimulation:
             count += 1
 
     def finish(self, end: Termination) -> None:
-        """Tell the observers."""
+        """Report the termination to the observers."""
         for observer in self.observers:
             observer.on_terminate(end)
 

@@ -3,7 +3,7 @@
 ``fmus/native/c/master.c`` does a block of exchanges at a time and writes all signals of each into rows
 allocated once. Afterwards the observers and endings see the rows of the block at once, or one by one in the
 instances' arrays as if they had been there.
-An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
+An ending in mid-block means that the FMUs have run on for the rest of it, which is not used.
 
 It covers FMUs of any kind in this process. Faults change inputs between exchange and step, so a run with
 manipulators takes the Python loop; so does one with conversions, with a model in process or an FMU in a
@@ -119,19 +119,19 @@ class CompiledMaster(CoSimulation):
         """Return how many exchanges of a block take place, and why the run is over after them; empty if it goes on."""
         if self.interrupt.requested:
             return 1, "interrupted"
-        found = (len(times), "stop_time") if has_last else (len(times), "")
+        found = len(times), "stop_time" if has_last else ""
         for ending in self.endings:
             reached = (
                 ending.first_reached(times, rows)
                 if isinstance(ending, BlockStopCondition)
-                else self._try(ending, times, rows)
+                else self._first_reached(ending, times, rows)
             )
             if reached is not None and (reached[0] + 1 < found[0] or found[1] in ("", "stop_time")):
                 found = reached[0] + 1, reached[1]
         return found
 
-    def _try(self, ending: StopCondition, times: Times, rows: Array) -> tuple[int, str] | None:
-        """Return where an ending that looks at single exchanges ends a block."""
+    def _first_reached(self, ending: StopCondition, times: Times, rows: Array) -> tuple[int, str] | None:
+        """Return where an ending ends a block that looks at single exchanges, and the reason."""
         for row, t_ns in enumerate(times.tolist()):
             self.values[:] = rows[row]
             reason = ending.stop_reason(t_ns)

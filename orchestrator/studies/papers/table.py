@@ -3,9 +3,8 @@
 from pathlib import Path
 
 from rich.markup import escape
-from rich.table import Table
 
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.papers.result import OWN, Reproduction, Row
 
 
@@ -13,9 +12,8 @@ def print_reproduction(result: Reproduction, out: Path) -> None:
     """Print title, rows, notes and where the pictures are."""
     to = console()
     to.print(f"[bold]{result.paper}[/]  {escape(result.title)}")
-    table = Table(box=None if not to.is_terminal else Table().box, pad_edge=to.is_terminal)
-    for name in ("run", "quantity", "printed", "here", "difference", "allowed", "", "check of"):
-        table.add_column(name, justify="left" if name in ("run", "quantity", "", "check of") else "right")
+    texts = ("run", "quantity", "", "check of")
+    table = result_table(to, ("run", "quantity", "printed", "here", "difference", "allowed", "", "check of"), texts)
     last = None
     for row in result.rows:
         if last is not None and row.run != last:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.files import write_whole
-from orchestrator.inputs.text.console import console, say, working
+from orchestrator.inputs.text.console import console, result_table, say, working
 from orchestrator.inputs.text.errors import NOT_PARKED, PARKED, BadInput
 from orchestrator.inputs.text.owned import lock_folder
 from orchestrator.inputs.text.quantities import number
@@ -30,7 +30,7 @@ exit codes: 0 all parameters identified, 1 some are not (they are named, without
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what the command takes."""
+    """Add the arguments of the command."""
     parser.add_argument("log", type=Path, metavar="LOG", help=".csv, .mf4 or .mcap, or the folder of a run")
     parser.add_argument(
         "--column",
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Identify, write, print. Returns 0 if all parameters are identified, else 1."""
-    from orchestrator.presentation.log.read_log import log_file
+    from orchestrator.presentation.log.read_log import log_file, log_name
     from orchestrator.studies.identification.car_file import base_car, write_car
     from orchestrator.studies.identification.identify import identify, usual_parameters
     from orchestrator.studies.identification.logs import Columns, read_drive
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     from orchestrator.studies.identification.signals import check_signal
 
     log = log_file(str(arguments.log))
-    name = log.stem if log.stem != "run" else log.resolve().parent.name
+    name = log_name(log)
     columns = {check_signal(key): value for key, value in _pairs(arguments.column, "--column").items()}
     span = _seconds(arguments.begin, "--from", float("-inf")), _seconds(arguments.end, "--to", float("inf"))
     settings = _pairs(arguments.set, "--set")
@@ -93,18 +93,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print(found: "Identification", out: Path) -> None:
-    from rich.table import Table
-
     from orchestrator.studies.identification.result import interval_text, notes, sentence, value_text
 
     screen = console()
-    table = Table(box=None if not screen.is_terminal else Table().box, pad_edge=screen.is_terminal)
-    for title in ("parameter", "value", "95 % interval", "unit", ""):
-        table.add_column(title, justify="right" if title in ("value", "95 % interval") else "left")
+    titles = ("parameter", "value", "95 % interval", "unit", "")
+    table = result_table(screen, titles, ("parameter", "unit", ""))
     for item in found.parameters:
-        words = (value_text(item), interval_text(item)) if item.identified else ("", "")
+        cells = (value_text(item), interval_text(item)) if item.identified else ("", "")
         verdict = "[green]identified[/]" if item.identified else "[yellow]not identified[/]"
-        table.add_row(item.candidate.name, *words, item.unit, verdict)
+        table.add_row(item.candidate.name, *cells, item.unit, verdict)
     screen.print(table)
     values = " ".join(f"{value:.3g}" for value in found.identifiability.singular_values)
     screen.print(f"singular values (1 / useful accuracy): {values}")

@@ -29,6 +29,8 @@ NOISE = {
     "odometry.y": 0.003,
     "odometry.heading": 0.001,
 }
+CAR = {"car.wheelbase": 2.62, "car.steering.ratio": 17.3, "odometry.radius_error": 0.01, "odometry.ideal": 0.0}
+CAR |= {"odometry.steering_offset": 0.004}
 FOLLOWED = ("pose.x", "pose.y", "pose.heading", "measured_speed", "steering_wheel_angle")
 SINGLE_TRACK = 1
 

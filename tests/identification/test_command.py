@@ -10,14 +10,14 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.studies.identification.car_file import base_car, write_car
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.logs import Columns, read_drive
+from orchestrator.studies.identification.parameter import GEOMETRY, ODOMETRY
 from orchestrator.studies.identification.signals import Series
-from tests.identification.drives import measurements_only, random_drive, simulated_log
+from tests.identification.drives import CAR, measurements_only, random_drive, simulated_log
 from tests.report.test_page import data_of
 
-TRUE = {"car.wheelbase": 2.62, "car.steering.ratio": 17.3, "odometry.radius_error": 0.01, "odometry.ideal": 0.0}
-TRUE |= {"odometry.steering_offset": 0.004}
 DEGREE = np.pi / 180.0
 NAMES = {"pose.x": "east", "pose.y": "north", "pose.heading": "yaw", "measured_speed": "v"}
 NAMES |= {"steering_wheel_angle": "wheel"}
@@ -31,7 +31,7 @@ COLUMNS = [word for signal, column in NAMES.items() for word in ("--column", f"{
 def log() -> dict[str, Series]:
     random = np.random.default_rng(4747)
     angle, speed = random_drive(random)
-    return measurements_only(simulated_log(TRUE, (angle[:1500], speed[:1500]), random, CompiledVehicle()), TRUE)
+    return measurements_only(simulated_log(CAR, (angle[:1500], speed[:1500]), random, CompiledVehicle()), CAR)
 
 
 def columns_of(log: dict[str, Series]) -> dict[str, np.ndarray]:
@@ -81,11 +81,13 @@ def test_a_table_in_other_units_gives_a_car_for_scenarios(
     rows = {row["name"]: row for row in printed["parameters"]}
     assert set(rows) == {"car.steering.ratio", "odometry.radius_error", "odometry.steering_offset"}
     for name, row in rows.items():
-        assert row["low"] <= TRUE[name] <= row["high"], name
+        assert row["low"] <= CAR[name] <= row["high"], name
     assert printed["signals"]["pose.heading"]["column"] == "yaw"
     data, _ = data_of((out / "report.html").read_text(encoding="utf-8"))
     assert "residual.pose.x" in data["runs"][1]["signals"]
     assert data["verdict"]["text"] == "3 of 3 identified"
+    residuals = [plot["signals"] for plot in data["plots"] if plot["title"].startswith("Residual")]
+    assert residuals == [["residual.pose.x", "residual.pose.y"], ["residual.pose.heading"]]
     scenario = tmp_path / "scenario.yaml"
     scenario.write_text(f"extends: guo2015-case4\ncar: {out / 'car.yaml'}\n", encoding="utf-8")
     vehicle = load_scenario(str(scenario)).vehicle
@@ -121,6 +123,7 @@ def test_the_log_of_a_run_needs_no_columns(tmp_path: Path) -> None:
     assert "steering_wheel_request" in drive.inputs
 
 
+KNOWN = [word for name in (*GEOMETRY, *ODOMETRY) for word in ("--set", f"{name}={CAR[name]}")]
 REFUSED = [
     (["--column", "pose.x=est"], "has no column est; did you mean east"),
     (["--column", "pose.z=east"], "no such signal; did you mean"),
@@ -129,6 +132,7 @@ REFUSED = [
     (["--fit", "steering.lag"], "steering.lag: the log has no steering_wheel_request"),
     (["--set", "car.wheelbase=2 deg"], "expected"),
     (["--set", "car.wheelbase"], "expected NAME=VALUE"),
+    (KNOWN, "all usual parameters are known already"),
     (["--from", "100"], "has 0 samples there"),
 ]
 
@@ -151,3 +155,11 @@ def test_files_that_are_no_logs_are_refused(tmp_path: Path) -> None:
             read_drive(tmp_path / name, Columns())
     with pytest.raises(BadInput, match="no such file"):
         read_drive(tmp_path / "none.csv", Columns())
+
+
+@pytest.mark.parametrize("numbers", [(3,), (1, 2), (2, 1), (1, 3)])
+def test_a_car_keeps_the_numbers_of_its_sensors(tmp_path: Path, numbers: tuple[int, ...]) -> None:
+    base = base_car("", {f"car.ultrasonic.mounts[{number}].x": f"{number}.5" for number in numbers})
+    write_car(tmp_path / "car.yaml", base, {"car.wheelbase": 2.6}, "a test")
+    written = base_car(str(tmp_path / "car.yaml"), {}).values
+    assert written == {**base.values, "car.wheelbase": 2.6}

@@ -9,16 +9,13 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.estimate import correlation_time
 from orchestrator.studies.identification.identify import identify
-from orchestrator.studies.identification.parameter import ODOMETRY
+from orchestrator.studies.identification.parameter import GEOMETRY, ODOMETRY
 from orchestrator.studies.identification.playback import dead_time_resolution
 from orchestrator.studies.identification.result import Identification, as_json, sentence
 from orchestrator.studies.identification.signals import MeasuredDrive, Series, drive_of
-from tests.identification.drives import STEP, measurements_only, pair, random_drive, simulated_log
+from tests.identification.drives import CAR, STEP, measurements_only, pair, random_drive, simulated_log
 
 PAIRS, COVERAGE = 20, 0.9
-GEOMETRY = ("car.wheelbase", "car.steering.ratio")
-CAR = {"car.wheelbase": 2.62, "car.steering.ratio": 17.3, "odometry.radius_error": 0.01, "odometry.ideal": 0.0}
-CAR |= {"odometry.steering_offset": 0.004}
 
 
 @pytest.fixture(scope="module")

@@ -18,20 +18,21 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
         if not any(_changes(item, name) for item in recordings for name in signals):
             continue
         if _far_apart(recordings, signals):
-            plots += [_plot(f"{title}: {_words(name)}", unit, least, [name], checks) for name in signals]
+            plots += [plot_of(f"{title}: {words_of(name)}", unit, least, [name], checks) for name in signals]
         else:
-            plots.append(_plot(title, unit, least, signals, checks))
+            plots.append(plot_of(title, unit, least, signals, checks))
     shown = {_short(name) for plot in plots for name in plot["signals"]}
     for name in more:
         if _short(name) not in shown:
             variable = next((item.variables[name] for item in recordings if name in item.signals), None)
             if variable is not None:
                 shown.add(_short(name))
-                plots.append(_plot(name, variable.signal.unit, 0.0, [name], checks))
+                plots.append(plot_of(name, variable.signal.unit, 0.0, [name], checks))
     return plots
 
 
-def _plot(title: str, unit: str, least: float, signals: list[str], checks: list[Check]) -> dict[str, Any]:
+def plot_of(title: str, unit: str, least: float, signals: list[str], checks: list[Check]) -> dict[str, Any]:
+    """Return a plot of ``signals``; ``least``: smallest span of its y axis, in ``unit``."""
     limits = sorted({bound for check in checks if check.signal in signals for bound in _bounds(check)})
     return {"title": title, "unit": unit, "least": least, "signals": signals, "limits": limits}
 
@@ -61,7 +62,8 @@ def _far_apart(recordings: list[Recording], names: list[str]) -> bool:
     return whole > 20.0 * max(high - low for low, high in ranges)
 
 
-def _words(name: str) -> str:
+def words_of(name: str) -> str:
+    """Return the name of a signal, without its instance, as words."""
     return _short(name).replace(".", " ").replace("_", " ")
 
 

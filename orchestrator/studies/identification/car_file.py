@@ -19,7 +19,7 @@ ELEMENT = re.compile(r"([^\[\]]+)\[(\d+)\]")
 
 
 class BaseCar(NamedTuple):
-    """What is known of the vehicle before the log."""
+    """The vehicle as far as it is known before the log."""
 
     name: str
     """Of the car; empty: the defaults."""
@@ -66,7 +66,7 @@ def _yaml_value(name: str, value: float) -> Any:
 
 
 def _sections(flat: Mapping[str, Any]) -> dict[str, Any]:
-    """Return sections of flat names; entries of an array become a list if it is complete from the first on."""
+    """Return sections of flat names; entries of an array become a list as far as it is complete from the first on."""
     tree: dict[str, Any] = {}
     for name, value in flat.items():
         place = tree
@@ -82,8 +82,9 @@ def _with_lists(tree: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in tree.items():
         match = ELEMENT.fullmatch(key)
         inner = _with_lists(value) if isinstance(value, dict) else value
-        if match is None:
-            found[key] = inner
+        entries = [] if match is None else found.get(match[1], [])
+        if match is not None and int(match[2]) == len(entries) + 1:
+            found[match[1]] = [*entries, inner]
         else:
-            found.setdefault(match[1], []).append(inner)
+            found[key] = inner
     return found

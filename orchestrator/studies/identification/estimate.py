@@ -1,9 +1,9 @@
-"""Weighted least squares with unknown noise, and what the result is worth.
+"""Weighted least squares with unknown noise, and the intervals of the result.
 
     minimise  sum r(theta)' r(theta) / s^2  +  sum ((theta - theta_0) / (20 a))^2
 
 The noise ``s`` of each signal is that of its residuals. The second term, with the useful accuracy ``a``, keeps the
-solution finite where the drive says nothing. The variance of a parameter is the larger of two: that of white noise
+solution finite where a drive has no information. The variance of a parameter is the larger of two: that of white noise
 times the integrated autocorrelation time of the residuals (Geyer's initial positive sequence), and that of scores
 which are independent from window to window (cluster-robust, Liang and Zeger 1986) with Student's quantile.
 """

@@ -1,4 +1,4 @@
-"""Which parameters a log identifies; which it cannot tell apart or does not respond to; and what to drive instead.
+"""Which parameters a log identifies; which it cannot separate or does not respond to; and what to drive instead.
 
 With the Fisher information scaled by useful accuracies, a direction with singular value s is known to 1.96 / s useful
 accuracies (95 %). Directions worse than 1 are undetermined, and the parameters with a large part in them are named.
@@ -42,7 +42,7 @@ class Undetermined(NamedTuple):
 
 
 class Identifiability(NamedTuple):
-    """What a log tells about the parameters."""
+    """The information of a log about the parameters."""
 
     identified: tuple[bool, ...]
     singular_values: Array

@@ -22,44 +22,46 @@ BODY, KINEMATIC = "body", 0
 
 
 def identify(
-    drive: MeasuredDrive, known: dict[str, float], names: Sequence[str] = (), vehicle: CompiledVehicle | None = None
+    drive: MeasuredDrive, known: dict[str, float], names: Sequence[str], vehicle: CompiledVehicle | None = None
 ) -> Identification:
-    """Return the identified parameters of a drive; ``names``: of which, by default :func:`usual_parameters`.
+    """Return the parameters ``names`` as a drive identifies them, for example :func:`usual_parameters`.
 
     ``known``: parameters of the vehicle that differ from the defaults. Raises ``BadInput``.
     """
-    if known.get(BODY, KINEMATIC) != KINEMATIC and drive.followed.keys() - {"steering_wheel_angle"}:
+    if _has_mass(known) and drive.follows_speed:
         text = "a body with mass needs its speed_request in the log; a measured speed is followed by kinematic only"
         raise BadInput(text, key="--set body")
-    chosen = [candidate(name, known) for name in names or usual_parameters(drive, known)]
-    if not chosen:
+    if not names:
         raise BadInput("all usual parameters are known already; name others: --fit A,B", key="--set")
-    problem = Problem(vehicle or CompiledVehicle(), drive, chosen, known)
+    problem = Problem(vehicle or CompiledVehicle(), drive, [candidate(name, known) for name in names], known)
     _require_free(problem)
     found = estimate(problem)
     return Identification(problem, found, identifiability(problem, found))
 
 
-def usual_parameters(drive: MeasuredDrive, known: dict[str, float], given: Sequence[str] = ()) -> list[str]:
-    """Return the parameters that this log may tell about, without those that are ``given``."""
+def usual_parameters(drive: MeasuredDrive, known: dict[str, float], given: Sequence[str]) -> list[str]:
+    """Return the parameters that this log may identify, without those that are ``given``."""
     names = list(GEOMETRY)
-    has_request = "steering_wheel_angle" not in drive.followed
-    names += STEERING_ACTUATOR if has_request else ()
-    names += DRIVE if known.get(BODY, KINEMATIC) != KINEMATIC else ()
+    names += () if drive.follows_steering else STEERING_ACTUATOR
+    names += DRIVE if _has_mass(known) else ()
     has_odometry = "odometry" in drive.frames
     if has_odometry or "measured_speed" in drive.followed or {"speed", "measured_speed"} <= drive.compared.keys():
         names.append(ODOMETRY[0])
-    if has_odometry or not has_request:
+    if has_odometry or drive.follows_steering:
         names.append(ODOMETRY[1])
     return [name for name in names if name not in given]
 
 
+def _has_mass(known: dict[str, float]) -> bool:
+    return known.get(BODY, KINEMATIC) != KINEMATIC
+
+
 def _require_free(problem: Problem) -> None:
     """Raise ``BadInput`` for a parameter of an actuator whose requests are not in the log."""
-    followed = problem.drive.followed
+    drive = problem.drive
     without = {
-        **(dict.fromkeys(WITHOUT_ACTUATOR, "steering_wheel_request") if "steering_wheel_angle" in followed else {}),
-        **(dict.fromkeys(WITHOUT_DRIVE, "speed_request") if followed.keys() - {"steering_wheel_angle"} else {}),
+        **(dict.fromkeys(WITHOUT_ACTUATOR, "steering_wheel_request") if drive.follows_steering else {}),
+        **(dict.fromkeys(WITHOUT_DRIVE, "speed_request") if drive.follows_speed else {}),
     }
     for item in problem.candidates:
         if item.name in without:

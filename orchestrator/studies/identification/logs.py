@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,10 +26,10 @@ MAX_SAMPLES = 2_000_000
 
 
 class Columns(NamedTuple):
-    """What the user says of the columns."""
+    """Names and units of the columns as the user gives them, and the part of the log."""
 
     names: Mapping[str, str] = {}
-    """Signal of the vehicle -> its column, where the log calls it otherwise."""
+    """Signal of the vehicle -> its column, where that has another name."""
     units: Mapping[str, str] = {}
     """Column -> its unit, where the log states none."""
     span: tuple[float, float] = (-np.inf, np.inf)
@@ -76,6 +77,11 @@ class _CsvLog(Log):
         except OSError as error:
             raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
 
+    @cached_property
+    def _times(self) -> Array:
+        """Return the times of all rows [s]. Raises ``TableError``."""
+        return np.array(table_times(self._table))
+
     def names(self) -> list[str]:
         return [head.name for place, head in enumerate(self._table.heads) if place != self._table.time]
 
@@ -88,7 +94,7 @@ class _CsvLog(Log):
             table = self._table._replace(rows=rows, lines=lines)
             if not kept:
                 raise TableError(f"column {column} is empty")
-            return Series(np.array(table_times(table)), np.array(column_values(table, number, place, unit)), column)
+            return Series(self._times[kept], np.array(column_values(table, number, place, unit)), column)
         except (TableError, UnfitUnitsError) as error:
             raise BadInput(str(error), file=self.path) from None
 
@@ -205,7 +211,7 @@ def _open(path: Path) -> Log:
 
 
 def _column_for(signal: str, known: list[str], columns: Columns, path: Path) -> str:
-    """Return the column of a signal: as the user says, else the one that has its name; empty without one."""
+    """Return the column of a signal: as the user names it, else the one of its name; empty without one."""
     if signal in columns.names:
         return _column(columns.names[signal], known, "--column", path)
     return next((name for name in (f"vehicle.{signal}", signal) if name in known), "")

@@ -1,4 +1,4 @@
-"""Manoeuvres that a further log could have, and what each would tell about parameters (design of experiments)."""
+"""Manoeuvres that a further log could have, and the information of each about parameters (design of experiments)."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from orchestrator.studies.identification.signals import FRAMES, TYPICAL_NOISE, M
 SAMPLE_TIME = 0.02
 """Of the log that a manoeuvre would give [s]."""
 FURTHER_SIGNALS = (*FRAMES["pose"], "speed", "steering_wheel_angle", *FRAMES["odometry"], "measured_speed")
-"""What a log could have besides, with typical noise."""
+"""Signals that a log could have besides, with typical noise."""
 
 
 class Manoeuvre(NamedTuple):
@@ -20,7 +20,7 @@ class Manoeuvre(NamedTuple):
 
     name: str
     text: str
-    """What to drive."""
+    """The drive in words."""
     corners: tuple[tuple[float, float, float], ...]
     """Time [s], steering-wheel angle as a share of its limit, speed [m/s]."""
 
@@ -96,8 +96,8 @@ def _drive(problem: Problem, choice: Manoeuvre, names: tuple[str, ...]) -> Measu
     angle = Series(t, limit * np.interp(t, times, shares), choice.name)
     speed = Series(t, np.interp(t, times, speeds), choice.name)
     original = problem.drive
-    inputs = {} if "steering_wheel_angle" in original.followed else {"steering_wheel_request": angle}
-    if original.followed.keys() <= {"steering_wheel_angle"}:
+    inputs = {} if original.follows_steering else {"steering_wheel_request": angle}
+    if not original.follows_speed:
         inputs["speed_request"] = speed
     followed = {name: angle if name == "steering_wheel_angle" else speed for name in original.followed}
     compared = {name: Series(t, np.zeros(len(t)), choice.name) for name in names}

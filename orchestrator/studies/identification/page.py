@@ -1,6 +1,7 @@
-"""The page of an identification: log and model on top of each other, residuals as curves, the parameters above."""
+"""The page of an identification: log and model in one replay, residuals as curves, the parameters above."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -9,8 +10,8 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.presentation.report.page import page
 from orchestrator.presentation.report.payload import Arrays
-from orchestrator.presentation.report.plots import plots_of
-from orchestrator.presentation.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
+from orchestrator.presentation.report.plots import plot_of, plots_of, words_of
+from orchestrator.presentation.report.replay import KEYS, page_of_limited_size
 from orchestrator.presentation.report.run_data import ribbons_of, run_data
 from orchestrator.presentation.report.still import origin_of
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -24,7 +25,7 @@ from orchestrator.studies.identification.result import (
     sentence,
     value_text,
 )
-from orchestrator.studies.identification.signals import FRAMES, Series, unit_of
+from orchestrator.studies.identification.signals import FRAMES, unit_of
 
 PREFIX = "vehicle."
 RESIDUAL = "residual."
@@ -35,12 +36,7 @@ MAX_INSTANTS = 20_000
 def write_identification_page(path: Path, found: Identification, title: str) -> None:
     """Write the page; fewer instants are kept if it would pass 1 MB."""
     measured, model = _recordings(found, title)
-    text = ""
-    for most in MOST_ROWS:
-        text = _page(found, measured, model, title, most)
-        if len(text.encode()) < LARGEST_PAGE:
-            break
-    write_whole(path, text)
+    write_whole(path, page_of_limited_size(lambda most: _page(found, measured, model, title, most)))
 
 
 def _page(found: Identification, measured: Recording, model: Recording, title: str, most: int) -> str:
@@ -49,12 +45,11 @@ def _page(found: Identification, measured: Recording, model: Recording, title: s
         shown = run_data(run, arrays, [], label=label, most=most, keep=[], origin=origin)
         runs.append({**shown, "checks": [], "about": about})
     missing = [name for item in found.identifiability.undetermined for name in item.names]
-    residuals = [name for name in model.signals if name.startswith(RESIDUAL)]
     rows = {item.candidate.name: item for item in found.parameters}
     header = {
         "title": title,
         "name": title,
-        "subtitle": "A: log \u00b7 B: model, laid on the log once; residuals are those of windows laid on the log each",
+        "subtitle": "A: log \u00b7 B: model, its path aligned with the log once; residuals: aligned window by window",
         "verdict": {
             "text": f"{len(rows) - len(missing)} of {len(rows)} identified",
             "kind": "warn" if missing else "good",
@@ -68,7 +63,7 @@ def _page(found: Identification, measured: Recording, model: Recording, title: s
             *(["Not identified", sentence(item)] for item in found.identifiability.undetermined),
             *(["Note", line] for line in notes(found)),
         ],
-        "plots": plots_of([measured, model], [], residuals),
+        "plots": [*plots_of([measured, model], [], []), *_residual_plots(model)],
         "ribbons": ribbons_of([measured, model], 2),
         "changes": [
             [name, f"{item.candidate.start:g}", f"{value_text(item)}" if item.identified else "\u2013"]
@@ -78,6 +73,19 @@ def _page(found: Identification, measured: Recording, model: Recording, title: s
         "foot": f"Parameters: start of the search, then identified value. {KEYS}",
     }
     return page(title, arrays.pack(header))
+
+
+def _residual_plots(model: Recording) -> list[dict[str, Any]]:
+    """Return the plots of the residuals: one for signals of one unit, poses apart from each other."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for name in model.signals:
+        if name.startswith(RESIDUAL):
+            unit = model.variables[name].signal.unit
+            groups.setdefault((name.rpartition(".")[0], unit), []).append(name)
+    return [
+        plot_of(f"Residual: {', '.join(map(words_of, names))}", unit, 0.0, names, [])
+        for (_, unit), names in groups.items()
+    ]
 
 
 def _unit(unit: str) -> str:
@@ -90,8 +98,8 @@ def _recordings(found: Identification, title: str) -> tuple[Recording, Recording
     drive = problem.drive
     longest = max(drive.compared.values(), key=lambda item: len(item.t))
     t = longest.t if len(longest.t) <= MAX_INSTANTS else np.linspace(0.0, drive.duration, MAX_INSTANTS)
-    measured = {name: _at(item, t) for name, item in {**drive.followed, **drive.compared}.items()}
-    requests = {name: _at(item, t, held=True) for name, item in drive.inputs.items()}
+    measured = {name: np.interp(t, item.t, item.values) for name, item in {**drive.followed, **drive.compared}.items()}
+    requests = {name: item.sample_and_hold(t) for name, item in drive.inputs.items()}
     simulated = problem.simulation(estimate.theta)
     ours = {name: np.interp(t, simulated.t, simulated.rows[:, OUTPUTS[name]]) for name in measured}
     for frame in drive.frames:
@@ -121,13 +129,6 @@ def _recordings(found: Identification, title: str) -> tuple[Recording, Recording
         Recording(t_ns, both | log, parameters[0], variables, info),
         Recording(t_ns, both | model, parameters[1], variables, info),
     )
-
-
-def _at(item: Series, t: Array, held: bool = False) -> Array:
-    if not held:
-        return np.interp(t, item.t, item.values)
-    values: Array = item.values[np.clip(np.searchsorted(item.t, t + 1e-9, side="right") - 1, 0, None)]
-    return values
 
 
 def _place_on_log(found: Identification, frame: str, t: Array) -> dict[str, Array]:

@@ -8,7 +8,7 @@ from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 from orchestrator.studies.identification.compiled_vehicle import PARAMETERS
 
 PRIOR_RANGE = 20.0
-"""Standard deviation of what is known before the drive, in useful accuracies: it keeps the solution finite."""
+"""Standard deviation of a parameter before the drive, in useful accuracies: it keeps the solution finite."""
 RELATIVE_ACCURACY = 0.05
 """Useful accuracy of a parameter without one of its own, relative to its value."""
 ABSOLUTE_ACCURACY = {

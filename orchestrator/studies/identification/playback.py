@@ -70,11 +70,10 @@ class Playback:
     @property
     def parameter_overrides(self) -> dict[str, float]:
         """Return the parameters of a model that follows, or whose requests are delayed beforehand."""
-        followed = self.drive.followed
         return {
             DEAD_TIME: 0.0,
-            **(WITHOUT_ACTUATOR if "steering_wheel_angle" in followed else {}),
-            **(WITHOUT_DRIVE if followed.keys() - {"steering_wheel_angle"} else {}),
+            **(WITHOUT_ACTUATOR if self.drive.follows_steering else {}),
+            **(WITHOUT_DRIVE if self.drive.follows_speed else {}),
         }
 
     def _sequence(self, delay: float) -> tuple[InputSequence, Array]:
@@ -93,7 +92,7 @@ class Playback:
         rows = np.zeros((len(at) - 1, len(INPUTS)))
         rows[:, [INPUTS["steering_active"], INPUTS["speed_control_active"]]] = 1.0
         for name, item in self.drive.inputs.items():
-            rows[:, INPUTS[name]] = _hold(item, at[:-1] - (delay if name == DELAYED else 0.0))
+            rows[:, INPUTS[name]] = item.sample_and_hold(at[:-1] - (delay if name == DELAYED else 0.0))
         return InputSequence(t_ns, rows), at
 
 
@@ -125,12 +124,6 @@ def _changes(item: Series) -> Array:
     """Return the times [s] at which a request changes."""
     times: Array = item.t[np.append(True, np.diff(item.values) != 0.0)]
     return times
-
-
-def _hold(item: Series, t: Array) -> Array:
-    places = np.clip(np.searchsorted(item.t, t + 1e-9, side="right") - 1, 0, None)
-    values: Array = item.values[places]
-    return values
 
 
 def _begins_at_rest(drive: MeasuredDrive) -> bool:

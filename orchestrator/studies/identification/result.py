@@ -1,4 +1,4 @@
-"""What an identification has found, for machines and for people."""
+"""The result of an identification: as data, and as sentences."""
 
 import math
 from typing import Any, NamedTuple
@@ -120,7 +120,7 @@ def sentence(item: Undetermined) -> str:
 
 
 def notes(found: Identification) -> list[str]:
-    """Return what else a reader should know: correlated estimates, residuals that are not white."""
+    """Return notes on the quality of the result: correlated estimates, residuals that are not white."""
     lines = []
     names = [item.name for item in found.problem.candidates]
     for row, name in enumerate(names):

@@ -1,4 +1,4 @@
-"""A log as signals of the vehicle over time: which column is which, in SI units, and what each is used for."""
+"""A log as signals of the vehicle over time, in SI units, and the use of each: input, followed or compared."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -13,10 +13,16 @@ FRAMES = {"pose": ("pose.x", "pose.y", "pose.heading"), "odometry": ("odometry.x
 """Poses whose frame is that of the log: it is estimated beside the parameters."""
 COMPARED = (*FRAMES["pose"], *FRAMES["odometry"], "speed", "measured_speed", "steering_wheel_angle")
 REQUESTS = tuple(name for name in INPUTS if not name.startswith("manual."))
+SPEEDS = ("measured_speed", "speed")
+"""Measurements that can stand for a speed request; the first one that the log has does."""
 USED = (*COMPARED, *REQUESTS)
 """Signals of the vehicle that a log can have."""
 TYPICAL_NOISE = {"m": 0.01, "rad": 0.002, "m/s": 0.01}
-"""Standard deviation by unit, before residuals tell it, and of signals that a further log would have."""
+"""Standard deviation by unit: first estimate before there are residuals, and of signals of a further log."""
+TIME_TOLERANCE = 1e-9
+"""Times [s] closer than this are the same instant."""
+MOVING_SPEED = 0.05
+"""Speed [m/s] above which the vehicle moves."""
 NOISE_FLOOR = {"m": 1e-3, "rad": 2e-4, "m/s": 1e-3}
 """Smallest standard deviation: below it the sampling of the inputs decides."""
 
@@ -29,7 +35,13 @@ class Series(NamedTuple):
     values: Array
     """SI"""
     column: str
-    """As the log calls it."""
+    """Its column in the log."""
+
+    def sample_and_hold(self, t: Array) -> Array:
+        """Return at times ``t`` [s] the latest sample; before the first one, the first."""
+        places = np.searchsorted(self.t, t + TIME_TOLERANCE, side="right") - 1
+        values: Array = self.values[np.maximum(places, 0)]
+        return values
 
 
 class MeasuredDrive(NamedTuple):
@@ -49,6 +61,16 @@ class MeasuredDrive(NamedTuple):
         """Return the frames that its poses are given in."""
         return [name for name, parts in FRAMES.items() if any(part in self.compared for part in parts)]
 
+    @property
+    def follows_steering(self) -> bool:
+        """Return whether the model follows a measured steering-wheel angle."""
+        return "steering_wheel_angle" in self.followed
+
+    @property
+    def follows_speed(self) -> bool:
+        """Return whether the model follows a measured speed."""
+        return any(name in self.followed for name in SPEEDS)
+
 
 def drive_of(series: Mapping[str, Series], file: object) -> MeasuredDrive:
     """Return how the signals of a log are used. Raises ``BadInput`` if no drive can be made of them."""
@@ -63,7 +85,7 @@ def drive_of(series: Mapping[str, Series], file: object) -> MeasuredDrive:
         _follow(("steering_wheel_angle",), "steering_wheel_request", signals, followed, file)
         inputs = {name: item for name, item in inputs.items() if not name.startswith("steering_")}
     if "speed_request" not in inputs or not _is_always_on(inputs, "speed_control_active", signals):
-        _follow(("measured_speed", "speed"), "speed_request", signals, followed, file)
+        _follow(SPEEDS, "speed_request", signals, followed, file)
         inputs = {name: item for name, item in inputs.items() if name.startswith("steering_")}
     compared = {
         name: without_jumps(name, signals[name]) for name in COMPARED if name in signals and name not in followed
@@ -91,8 +113,7 @@ def _is_always_on(inputs: Mapping[str, Series], active: str, signals: Mapping[st
     moves = signals.get("speed", signals.get("measured_speed"))
     if moves is None:
         return bool(inputs[active].values.all())
-    at = np.clip(np.searchsorted(inputs[active].t, moves.t, side="right") - 1, 0, None)
-    return bool((inputs[active].values[at] != 0.0)[np.abs(moves.values) > 0.05].all())
+    return bool((inputs[active].sample_and_hold(moves.t) != 0.0)[np.abs(moves.values) > MOVING_SPEED].all())
 
 
 def _between(item: Series, first: float, last: float) -> Series:

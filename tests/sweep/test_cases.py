@@ -41,6 +41,15 @@ def cases() -> list[LabelledScenario]:
     ]
 
 
+def test_slots_of_different_layouts_differ_in_numbers() -> None:
+    layouts = ("apa-parallel", "apa-parallel-left")
+    scenarios = [load_scenario(name) for name in layouts]
+    assert scenarios[0].slot_layout != scenarios[1].slot_layout, "the layouts were to differ"
+    shared, design = design_of([LabelledScenario({"scenario": name}, load_scenario(name)) for name in layouts])
+    assert shared.slot_layout is None
+    assert len(design.seeds) == 2
+
+
 def test_what_differs_is_a_column_and_nothing_else() -> None:
     shared, design = design_of(cases())
     keys = [field.key for field in design.fields]

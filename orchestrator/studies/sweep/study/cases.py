@@ -12,7 +12,7 @@ from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import SCENARIO_FIELDS, TRUE_FIELDS, TRUE_OWNERS, Field, find_field
 from orchestrator.studies.sweep.study.design import Design
 
-OWN = {"name", "title", "description", "source", "extends", "car", "file", "overrides"}
+OWN = {"name", "title", "description", "source", "extends", "car", "file", "overrides", "slot_layout"}
 """Keys of a scenario in which runs may differ without any effect."""
 
 
@@ -42,7 +42,8 @@ def design_of(cases: Iterable[LabelledScenario]) -> tuple[Scenario, Design]:
     values = np.column_stack([*columns.values()]) if columns else np.empty((len(scenarios), 0))
     seeds = np.array([scenario.seed for scenario in scenarios])
     words = {key: np.array([item[key] for item in labels]) for key in labels[0]}
-    return shared.model_copy(update={"car": None, "extends": None}), Design(fields, values, seeds, words)
+    without_origin = {"car": None, "extends": None, "slot_layout": None}
+    return shared.model_copy(update=without_origin), Design(fields, values, seeds, words)
 
 
 def with_samples(design: Design, samples: Mapping[Field, Array]) -> Design:

@@ -1,6 +1,5 @@
 """The scene of an episode from above as pixels: slot, target, obstacles, kerbs, car, and what its sensors measure."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,9 +7,12 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from apa_cosim.gym.episodes import Episodes
+from apa_cosim.gym.scene_source import Scenes
 from controller_fmu.policy.signals import SENSOR_COUNT
 from modelkit.variables import variables
-from orchestrator.evaluation.verdict.geometry import CarOutline, boxes, kerbs, place
+from orchestrator.evaluation.verdict.geometry import Box, CarOutline, boxes, kerbs, place
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.presentation.drawing.palette import LIGHT
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 SIZE = (640, 480)
@@ -19,21 +21,24 @@ VIEW_MARGIN = 4.0
 """Around start, target and car [m]."""
 FIRST_RANGE = 6
 """Place of the first range in an observation."""
-GROUND, OBSTACLE, SLOT, TARGET, CAR, GLASS, RANGE, KERB = (
-    *("#f4f5f7", "#8d949c", "#d8ecdd", "#1c7d43", "#1e6bd9", "#cfe0fb", "#f5a742", "#4a4f55"),
+GROUND, OBSTACLE, SLOT, GLASS, RANGE, KERB, TYRE = (
+    *("#f4f5f7", "#8d949c", "#d8ecdd", "#cfe0fb", "#f5a742", "#4a4f55", "#22262b"),
 )
+TARGET, CAR = LIGHT["good"], LIGHT["run-a"]
 
 
 def picture(episodes: Episodes, number: int) -> NDArray[np.uint8]:
     """Return an episode as it stands now, (height, width, 3)."""
-    vehicle = _vehicle(episodes, number)
-    x, y, heading, _ = episodes.poses[number].tolist()
-    target, slot = (getattr(episodes.scenes.truth, name)[number].tolist() for name in ("targets", "slots"))
-    car = CarOutline.of(vehicle)
-    view = _View(np.array([[x, y], target[:2], [vehicle["start.x"], vehicle["start.y"]]]))
-    if all(map(math.isfinite, slot)):
-        sx, sy, turn, length, width = slot
-        view.area(place(_rectangle(length, width), sx, sy, turn), SLOT)
+    scene = episodes.source.scenes(episodes.seeds[[number]])
+    vehicle = _vehicle(episodes.source.scenario, scene)
+    x, y, heading, steered = episodes.poses[number].tolist()
+    target, car = scene.truth.targets[0].tolist(), CarOutline.of(vehicle)
+    slot = Box(*scene.truth.slots[0].tolist()).outline()
+    has_slot = bool(np.isfinite(slot).all())
+    ends = np.array([[x, y], target[:2], [vehicle["start.x"], vehicle["start.y"]]])
+    view = _View(np.concatenate([ends, slot]) if has_slot else ends)
+    if has_slot:
+        view.area(slot, SLOT)
     time = float(episodes.times[number])
     for box in boxes(vehicle):
         if box.appear_at <= time < box.disappear_at:
@@ -46,18 +51,16 @@ def picture(episodes: Episodes, number: int) -> NDArray[np.uint8]:
     view.area(place(car.outline(), x, y, heading), CAR)
     window = np.array([[0.6, -0.8], [0.75, -0.8], [0.75, 0.8], [0.6, 0.8]]) * [car.wheelbase, car.half_width]
     view.area(place(window, x, y, heading), GLASS)
+    for wheel in car.wheel_outlines(steered):
+        view.area(place(wheel, x, y, heading), TYRE)
     for end_points in _ranges(vehicle, episodes.observations[number]):
         view.line(place(end_points, x, y, heading), RANGE, 2)
     return view.pixels()
 
 
-def _vehicle(episodes: Episodes, number: int) -> dict[str, float]:
-    names = [item.name for item in variables(episodes.source.scenario.models["vehicle"].params)]
-    return dict(zip(names, episodes.scenes.parameters[number].tolist(), strict=False))
-
-
-def _rectangle(length: float, width: float) -> Array:
-    return 0.5 * np.array([[-length, -width], [length, -width], [length, width], [-length, width]])
+def _vehicle(scenario: Scenario, scene: Scenes) -> dict[str, float]:
+    names = [item.name for item in variables(scenario.models["vehicle"].params)]
+    return dict(zip(names, scene.parameters[0].tolist(), strict=False))
 
 
 def _ranges(vehicle: dict[str, float], observation: Array) -> list[Array]:

@@ -46,6 +46,15 @@ class CarOutline(NamedTuple):
         half = self.half_width - WHEEL_WIDTH
         return [(0.0, -half), (0.0, half), (self.wheelbase, -half), (self.wheelbase, half)]
 
+    def wheel_outlines(self, steered: float) -> list[Array]:
+        """Return the corners (4, 2) [m] of each wheel in the car's frame, the front ones turned by ``steered`` [rad].
+
+        They point straight ahead where that is not known.
+        """
+        corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([WHEEL_RADIUS, 0.5 * WHEEL_WIDTH])
+        angle = steered if math.isfinite(steered) else 0.0
+        return [place(corners, x, y, angle if x > 0.0 else 0.0) for x, y in self.wheels()]
+
 
 FRAME, LONGEST = 0.1, 60.0
 """Between two pictures of a thing that moves, and how long it is followed [s]."""

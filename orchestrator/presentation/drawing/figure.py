@@ -16,7 +16,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse, Patch, Polygon
 
-from orchestrator.evaluation.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, place
+from orchestrator.evaluation.verdict.geometry import Box, CarOutline, place
 from orchestrator.presentation.drawing.looks import CAR, PERSON, looks
 from orchestrator.presentation.drawing.overview import Overview
 from orchestrator.presentation.drawing.palette import LIGHT, role
@@ -241,9 +241,5 @@ def _outlines(axis: Any, car: CarOutline, x: Array, y: Array, heading: Array) ->
 
 
 def _wheels(axis: Any, seen: Overview, car: CarOutline, pose: tuple[float, float, float]) -> None:
-    steered = float(seen.signal("vehicle.front_wheel_angle")[-1])
-    half_length, half_width = WHEEL_RADIUS, 0.5 * WHEEL_WIDTH
-    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([half_length, half_width])
-    for x, y in car.wheels():
-        local = place(corners, x, y, steered if x > 0.0 and math.isfinite(steered) else 0.0)
+    for local in car.wheel_outlines(float(seen.signal("vehicle.front_wheel_angle")[-1])):
         axis.add_patch(Polygon(place(local, *pose), facecolor=INK, linewidth=0, zorder=6))

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from fmus.files import whole
-from orchestrator.evaluation.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, place
+from orchestrator.evaluation.verdict.geometry import Box, place
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 from orchestrator.presentation.drawing.figure import BLUE, INK, STYLE, draw_scene, draw_thing
@@ -126,8 +126,8 @@ class _Moving:
         self._trail.set_data(x[: row + 1], y[: row + 1])
         self._body.set_xy(place(car.outline(), *pose))
         steered = float(self._seen.signal("vehicle.front_wheel_angle")[row])
-        for patch, at in zip(self._wheels, car.wheels(), strict=True):
-            patch.set_xy(place(_wheel(at, steered), *pose))
+        for patch, corners in zip(self._wheels, car.wheel_outlines(steered), strict=True):
+            patch.set_xy(place(corners, *pose))
         self._clock.set_text(f"{self._state(row)}   {t:.1f} s")
         for cursor in self._cursors:
             cursor.set_xdata([t, t])
@@ -178,12 +178,6 @@ def _curves() -> tuple[tuple[str, str, float], ...]:
         "steering wheel [deg]",
         1.0 / RAD_PER_DEGREE,
     )
-
-
-def _wheel(at: tuple[float, float], steered: float) -> Array:
-    """Return the corners of a wheel in the frame of the car; those in front are turned."""
-    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([WHEEL_RADIUS, 0.5 * WHEEL_WIDTH])
-    return place(corners, *at, steered if at[0] > 0.0 and math.isfinite(steered) else 0.0)
 
 
 def _write_gif(path: Path, frames: Iterator[Array], rate: float) -> int:

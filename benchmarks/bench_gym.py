@@ -12,12 +12,13 @@ from collections.abc import Callable
 import gymnasium
 import numpy as np
 
-import apa_cosim.gym
+from apa_cosim.gym import IDS
+from apa_cosim.gym.catalogue import FILE_IDS
 from benchmarks.results import record, size
 
 STEPS = size(20_000, 20)
 CARS = (1, 1024)
-NAMES = tuple(name for name in apa_cosim.gym.IDS if "TPCAP" not in name)
+NAMES = tuple(name for name in IDS if name not in FILE_IDS)
 
 
 def main() -> None:

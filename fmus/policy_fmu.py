@@ -13,7 +13,9 @@ ACTION = "action["
 OBSERVATION = "observation["
 PEDALS = {2: False, 3: True}
 """Number of actions -> whether they are those of pedals."""
-LONGEST_PERIOD = 10.0
+ACTION_PERIOD = 0.2
+"""Between two actions [s], where nothing else is given."""
+MAX_ACTION_PERIOD = 10.0
 """[s]"""
 
 
@@ -34,8 +36,8 @@ def build_policy_fmu(name: str, network: Path, period: float, out: Path) -> Path
 
     Raises ``BadPolicy`` for a file that is no policy, and without onnxruntime.
     """
-    if not 0.0 < period <= LONGEST_PERIOD:
-        raise BadPolicy(f"a period of {period:g} s: expected more than 0 and at most {LONGEST_PERIOD:g} s")
+    if not 0.0 < period <= MAX_ACTION_PERIOD:
+        raise BadPolicy(f"a period of {period:g} s: expected more than 0 and at most {MAX_ACTION_PERIOD:g} s")
     actions = count_actions(network)
     policy = PolicyFile(network.read_bytes(), round(period * 1e9))
     return build(policy_model(name, PEDALS[actions]), out, python_front(), policy)

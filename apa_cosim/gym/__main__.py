@@ -3,10 +3,12 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import get_args
 
 from rich.table import Table
 
-from apa_cosim.gym.ids import IDS
+from apa_cosim.gym.catalogue import FILE_IDS
+from apa_cosim.gym.ids import IDS, Body
 from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.ranking import Score, score
 from orchestrator.inputs.text.console import console
@@ -23,8 +25,9 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--scenes", nargs="+", default=["apa/Parallel-v0"], metavar="ID", help=", ".join(IDS))
     parser.add_argument("--episodes", type=int, default=100, metavar="N", help="scenes of each (100)")
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, metavar="S", help=f"of the scenes ({FIRST_SEED})")
-    parser.add_argument("--body", choices=("kinematic", "double_track"), help="equations of motion")
-    parser.add_argument("--files", nargs="+", type=Path, default=[], metavar="FILE", help="cases of apa/TPCAP-v0")
+    parser.add_argument("--body", choices=get_args(Body), help="equations of motion")
+    cases = f"cases of {', '.join(FILE_IDS)}"
+    parser.add_argument("--files", nargs="+", type=Path, default=[], metavar="FILE", help=cases)
     asked = parser.parse_args(arguments)
     if asked.episodes < 1:
         parser.error("--episodes: expected 1 or more")
@@ -32,7 +35,7 @@ def main(arguments: list[str]) -> int:
     scores: list[Score] = []
     try:
         for name in asked.scenes:
-            options = EnvironmentOptions(asked.body, files=asked.files if name == "apa/TPCAP-v0" else ())
+            options = EnvironmentOptions(asked.body, files=asked.files if name in FILE_IDS else ())
             scores += [score(system, name, seeds, options) for system in asked.systems]
     except BadInput as error:
         print(f"error: {error}", file=sys.stderr)

@@ -17,13 +17,15 @@ from apa_cosim.gym.spaces import (
     NUMBERS,
     OUTCOME,
     REASON,
+    RENDER_MODES,
     SCENE_SEED,
     SHOWN_NUMBERS,
     Floats,
     action_space,
+    check_render_mode,
     observation_space,
 )
-from fmus.compiled_episodes import RUNNING
+from fmus.policy_fmu import ACTION_PERIOD
 from orchestrator.inputs.scenario.scenario import DONE
 from orchestrator.inputs.text.errors import BadInput
 
@@ -43,19 +45,19 @@ class ParkingEnv(gymnasium.Env[Floats, Floats]):
     Further arguments: ``EnvironmentOptions``. Raises ``BadInput``.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 - so in Gymnasium
+    metadata = {"render_modes": RENDER_MODES, "render_fps": 1.0 / ACTION_PERIOD}  # noqa: RUF012 - so in Gymnasium
 
     def __init__(
         self, scenes: Scenes = "parallel", render_mode: str | None = None, **options: Unpack[GivenOptions]
     ) -> None:
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise BadInput(f"{render_mode!r}: expected rgb_array", key="render_mode")
+        check_render_mode(render_mode)
         given = options_of(options)
         self.render_mode = render_mode
         self.observation_space = observation_space()
         self.action_space = action_space(given.pedals)
         self._reward = given.reward
         self.episodes = Episodes(scene_source(scenes, given), 1, given.period)
+        self.metadata = {**self.metadata, "render_fps": 1.0 / given.period}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode; ``options``: ``scene_seed`` of its scene."""
@@ -63,15 +65,16 @@ class ParkingEnv(gymnasium.Env[Floats, Floats]):
         chosen = (options or {}).get(SCENE_SEED)
         scene = int(self.np_random.integers(LARGEST_SEED)) if chosen is None else scene_seed(chosen)
         self.episodes.begin(ONE, np.array([scene]))
-        return self._observation(), {SCENE_SEED: scene}
+        return self.episodes.observations[0], {SCENE_SEED: scene}
 
     def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Act for a period. Raises ``ResetNeeded`` where no episode runs."""
-        if self.episodes.progress[0] != RUNNING:
+        if self.episodes.is_reported[0]:
             raise ResetNeeded("no episode is running: call reset first")
         done = take_step(self.episodes, np.asarray(action, dtype=np.float64)[None], self._reward)
         info = {} if done.results is None else infos_of(done.results)[0]
-        return self._observation(), float(done.rewards[0]), bool(done.terminated[0]), bool(done.truncated[0]), info
+        seen = self.episodes.observations[0]
+        return seen, float(done.rewards[0]), bool(done.terminated[0]), bool(done.truncated[0]), info
 
     def render(self) -> Any:
         """Return the scene from above, (height, width, 3); None without ``render_mode``."""
@@ -89,9 +92,6 @@ class ParkingEnv(gymnasium.Env[Floats, Floats]):
     def close(self) -> None:
         """Free the memory of the car."""
         self.episodes.close()
-
-    def _observation(self) -> Floats:
-        return np.asarray(self.episodes.observations[0], dtype=np.float32)
 
 
 def scene_seed(value: Any) -> int:

@@ -7,34 +7,29 @@ first contact. It is judged as a run of a study is: the same numbers, the same r
 
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from apa_cosim.gym.options import DEFAULT_PERIOD, Reward
+from apa_cosim.gym.options import Reward
 from apa_cosim.gym.polygon_contact import PolygonClearance
 from apa_cosim.gym.recorded import RecordedEpisode
-from apa_cosim.gym.scene_source import Scenes, SceneSource
+from apa_cosim.gym.scene_source import SceneSource
+from apa_cosim.gym.spaces import Floats
 from controller_fmu.policy.signals import ACTION_COUNT, OBSERVATION_COUNT
-from fmus.compiled_batch import RecordedSignal, SampleTime, StopCondition
-from fmus.compiled_episodes import (
-    AT_STOP_TIME,
-    BROKEN_OFF,
-    RUNNING,
-    Access,
-    CompiledEpisodes,
-    EpisodeModels,
-)
+from fmus.compiled_batch import SampleTime
+from fmus.compiled_episodes import AT_STOP_TIME, BROKEN_OFF, RUNNING, Access, CompiledEpisodes, EpisodeModels
 from fmus.native.compilers import find_compiler
+from fmus.policy_fmu import ACTION_PERIOD, MAX_ACTION_PERIOD
 from fmus.study_slices import StudyCode, study_slices
 from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.numbers import CLEARANCE
-from orchestrator.evaluation.verdict.truth import GroundTruth
-from orchestrator.inputs.scenario.end_condition import SPEED
-from orchestrator.inputs.scenario.scenario import DONE, Scenario
+from orchestrator.inputs.scenario.scenario import DONE, PENETRATION, Scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.sweep.batch import signal_to_record, stop_condition_of
 from orchestrator.studies.sweep.disturbed import fault_receivers
 from orchestrator.studies.sweep.rows import FIRST_MEASURE, measures_for
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge_rows
@@ -52,9 +47,9 @@ CONTACT = SampleTime("vehicle.contact", (1,))
 class Results(NamedTuple):
     """Verdicts of some episodes, an entry for each."""
 
-    which: Integers
     outcomes: list[str]
     reasons: list[str]
+    contacts: Bools
     numbers: dict[str, Array]
     """By the names of ``summary.json``; SI units."""
 
@@ -62,21 +57,23 @@ class Results(NamedTuple):
 class Episodes:
     """``count`` episodes with scenes of ``source``. Raises ``BadInput`` without a C compiler."""
 
-    def __init__(self, source: SceneSource, count: int, period: float = DEFAULT_PERIOD, threads: int = 1) -> None:
+    def __init__(self, source: SceneSource, count: int, period: float = ACTION_PERIOD, threads: int = 1) -> None:
         scenario = source.scenario
-        if not 0.0 < period <= 10.0:
-            raise BadInput(f"{period!r} s: expected more than 0 and at most 10 s", key="period")
+        if not 0.0 < period <= MAX_ACTION_PERIOD:
+            raise BadInput(f"{period!r} s: expected more than 0 and at most {MAX_ACTION_PERIOD:g} s", key="period")
         self.source, self.count, self.period = source, count, period
         self.measures = measures_for(scenario)
         self._clearance = FIRST_MEASURE + self.measures.index(CLEARANCE)
         self._runs = _compile(scenario, count, self.measures)
         self.seeds: Integers = np.zeros(count, dtype=np.int64)
-        self.scenes = _empty(source, count)
+        self.is_reported: Bools = np.ones(count, dtype=bool)
+        """Whether :func:`take_step` has returned the end of each episode, or there was none yet."""
+        self._truth = source.scenes(np.array([0])).truth.repeat(count)
         self.actions: Array = np.zeros((count, ACTION_COUNT))
         self._period_ns = round(period * 1e9)
         self._step_ns = 0
         self._polygons: list[PolygonClearance | None] = [None] * count
-        self._driven: list[list[bytes]] = [[] for _ in range(count)]
+        self._action_log: list[list[bytes]] = [[] for _ in range(count)]
         self._finished: list[RecordedEpisode | None] = [None] * count
         self._threads = ThreadPoolExecutor(threads) if threads > 1 else None
         edges = np.linspace(0, count, threads + 1).astype(int).tolist()
@@ -88,14 +85,9 @@ class Episodes:
         return self._runs.progress
 
     @property
-    def rows(self) -> Array:
-        """What is kept of each episode so far, as in a study."""
-        return self._runs.rows
-
-    @property
-    def observations(self) -> Array:
-        """(count, observations) as of now."""
-        return self._runs.seen[:, :OBSERVATION_COUNT]
+    def observations(self) -> Floats:
+        """(count, observations) as of now, a copy."""
+        return self._runs.seen[:, :OBSERVATION_COUNT].astype(np.float32)
 
     @property
     def cost_to_go(self) -> Array:
@@ -114,23 +106,19 @@ class Episodes:
 
     def begin(self, which: Integers, seeds: Integers) -> None:
         """Begin the episodes ``which`` with the scenes of ``seeds``."""
-        self.begin_with(which, seeds, self.source.scenes(seeds))
-
-    def begin_with(self, which: Integers, seeds: Integers, scenes: Scenes) -> None:
-        """Begin the episodes ``which`` with scenes that were drawn before."""
+        scenes = self.source.scenes(seeds)
         if (self._period_ns % scenes.times[:, 0]).any():
             raise BadInput(f"{self.period:g} s is no whole number of communication steps", key="period")
         self._step_ns = int(np.gcd.reduce(scenes.times[:, 0], initial=self._step_ns))
         for number in which.tolist():
-            if self._driven[number]:
+            if self._action_log[number]:
                 self._finished[number] = self._record(number)
-            self._driven[number] = []
+            self._action_log[number] = []
         self._runs.begin(which, scenes.parameters, scenes.times, scenes.faults)
         self.seeds[which] = seeds
-        for whole, part in zip(self.scenes.truth, scenes.truth, strict=True):
+        self.is_reported[which] = False
+        for whole, part in zip(self._truth, scenes.truth, strict=True):
             whole[which] = part
-        self.scenes.parameters[which] = scenes.parameters
-        self.actions[which] = 0.0
         for place, number in enumerate(which.tolist()):
             polygons = self.source.obstacles(int(seeds[place]))
             car = CarOutline(*scenes.truth.cars[place].tolist())
@@ -140,7 +128,7 @@ class Episodes:
         """Take all that are running on by a period with ``actions`` (count, 2 or 3)."""
         self.actions[:, : actions.shape[1]] = actions
         for number in np.flatnonzero(self._runs.progress == RUNNING).tolist():
-            self._driven[number].append(self.actions[number].tobytes())
+            self._action_log[number].append(self.actions[number].tobytes())
         if any(self._polygons):
             self._advance_by_exchanges()
         elif self._threads is None:
@@ -152,10 +140,11 @@ class Episodes:
         """Look for contact with polygons at each exchange; the verdict has the smaller clearance."""
         runs = self._runs
         for _ in range(self._period_ns // self._step_ns):
+            running = np.flatnonzero(runs.progress == RUNNING).tolist()
             runs.advance(self.actions, self._step_ns)
-            for number in np.flatnonzero(runs.progress == RUNNING).tolist():
+            for number in running:
                 near = self._polygons[number]
-                if near is not None and near.look(self.poses[number, :3]) <= 0.0:
+                if near is not None and near.look(self.poses[number, :3]) < 0.0:
                     runs.progress[number] = BROKEN_OFF
         for near, row in zip(self._polygons, runs.rows, strict=True):
             if near is not None:
@@ -163,15 +152,13 @@ class Episodes:
 
     def results(self, which: Integers) -> Results:
         """Return the verdicts of ``which``, as they would be if they ended now."""
-        rows = self._runs.rows[which]
-        truth = GroundTruth(*(part[which] for part in self.scenes.truth))
+        truth, rows = self._truth.select(which), self._runs.rows[which]
         verdict = judge_rows(self.source.scenario, truth, self.measures, rows)
-        outcomes = [OUTCOMES[code] for code in verdict.outcome]
+        contacts = verdict.numbers[PENETRATION] > 0.0
         reasons = list(verdict.reason)
-        for place, number in enumerate(which.tolist()):
-            if self._runs.progress[number] == BROKEN_OFF:
-                reasons[place] = "contact" if rows[place, self._clearance] < 0.0 else "wheel at a low kerb"
-        return Results(which, outcomes, reasons, verdict.numbers)
+        for place in np.flatnonzero(self.progress[which] == BROKEN_OFF).tolist():
+            reasons[place] = "contact" if contacts[place] else "wheel at a low kerb"
+        return Results([OUTCOMES[code] for code in verdict.outcome], reasons, contacts, verdict.numbers)
 
     def record(self, number: int, previous: bool = False) -> RecordedEpisode:
         """Return an episode as it is so far, or the one before it. Raises ``BadInput`` if there is none."""
@@ -181,7 +168,7 @@ class Episodes:
         return found
 
     def _record(self, number: int) -> RecordedEpisode:
-        actions = np.frombuffer(b"".join(self._driven[number])).reshape(-1, ACTION_COUNT)
+        actions = np.frombuffer(b"".join(self._action_log[number])).reshape(-1, ACTION_COUNT)
         return RecordedEpisode(self.source, int(self.seeds[number]), actions, self.period, float(self.times[number]))
 
     def close(self) -> None:
@@ -202,12 +189,13 @@ class Stepped(NamedTuple):
 
 
 def take_step(episodes: Episodes, actions: Array, reward: Reward) -> Stepped:
-    """Take all running episodes on by a period; those that were over before get no reward and end no more."""
-    before, cost, time = episodes.progress != RUNNING, episodes.cost_to_go.copy(), episodes.times
+    """Take all running episodes on by a period; those whose end was returned before get no reward and end no more."""
+    cost, time = episodes.cost_to_go.copy(), episodes.times
     episodes.advance(actions)
     progress = episodes.progress
     rewards = reward.progress * (cost - episodes.cost_to_go) + reward.time * (episodes.times - time)
-    ended = (progress != RUNNING) & ~before
+    ended = (progress != RUNNING) & ~episodes.is_reported
+    episodes.is_reported |= ended
     truncated = ended & (progress == AT_STOP_TIME)
     terminated = ended & ~truncated
     results = None
@@ -220,31 +208,17 @@ def take_step(episodes: Episodes, actions: Array, reward: Reward) -> Stepped:
 def final_rewards(results: Results, reward: Reward) -> Array:
     """Return what the ends of episodes are worth."""
     found = [
-        reward.parked if outcome in DONE else reward.contact if reason == "contact" else reward.otherwise
-        for outcome, reason in zip(results.outcomes, results.reasons, strict=True)
+        reward.parked if outcome in DONE else reward.contact if contact else reward.otherwise
+        for outcome, contact in zip(results.outcomes, results.contacts.tolist(), strict=True)
     ]
     return np.array(found)
 
 
-def _empty(source: SceneSource, count: int) -> Scenes:
-    one = source.scenes(np.array([0]))
-    return one._replace(
-        parameters=np.repeat(one.parameters, count, axis=0),
-        truth=GroundTruth(*(np.repeat(p, count, axis=0) for p in one.truth)),
-    )
-
-
-def _compile(scenario: Scenario, count: int, measures: list[Any]) -> CompiledEpisodes:
-    end = scenario.stop_condition
-    ending = StopCondition(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
-    kept = [
-        RecordedSignal(item.how, item.signal, None if item.when is None else SampleTime(*item.when))
-        for item in measures
-    ]
-    seen = (*OBSERVED, "controller.cost_to_go", *POSE)
-    access = Access(ACTIONS, seen, CONTACT)
+def _compile(scenario: Scenario, count: int, measures: list[Measure]) -> CompiledEpisodes:
+    access = Access(ACTIONS, (*OBSERVED, "controller.cost_to_go", *POSE), CONTACT)
+    kept = [signal_to_record(item) for item in measures]
     faults = tuple(item.inputs for item in fault_receivers(scenario))
-    task = EpisodeModels(dict(scenario.models), ending, kept, access, faults)
+    task = EpisodeModels(dict(scenario.models), stop_condition_of(scenario), kept, access, faults)
     try:
         slices = study_slices(task.models, task.signals(), {})
         code = StudyCode(slices, find_compiler().options_for_this_machine())

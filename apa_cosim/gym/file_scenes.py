@@ -12,14 +12,15 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from apa_cosim.gym.scene_source import Polygons, Scenes, Seeds
+from apa_cosim.gym.scene_source import Scenes, Seeds
 from controller_fmu.policy.params import PolicyParams, PolicySystem
 from controller_fmu.policy.standalone import MODEL
+from modelkit.geometry import Point, line_box, point_gap
 from modelkit.variables import variables
 from orchestrator.evaluation.verdict.geometry import edges
-from orchestrator.evaluation.verdict.truth import GroundTruth, join_truths, truth_of
+from orchestrator.evaluation.verdict.polygons import Polygons
+from orchestrator.evaluation.verdict.truth import join_truths
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.scenario.tpcap import read_tpcap
@@ -27,7 +28,7 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.parking.cases import BODY
 from orchestrator.studies.parking.world.study import BODY_STEP
 from orchestrator.studies.sweep.disturbed import numbers_for
-from orchestrator.studies.sweep.job import Chunk, arrays, make_job
+from orchestrator.studies.sweep.job import Chunk, arrays, make_job, truths
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.study import Study
 from vehicle_fmu.scene import SceneParams
@@ -52,15 +53,15 @@ class FileScenes:
         read = [_policy_scenario(_scenario(Path(file)), body, stop_time, pedals) for file in files]
         self._scenarios = read
         self.scenario = read[0].model_copy(update={"obstacles": []})
-        made = [arrays(make_job(_study(item)), _chunk(item)) for item in read]
+        runs = [(make_job(_study(item)), _chunk(item)) for item in read]
+        made = [arrays(*run) for run in runs]
         self._lines, self._times = (np.concatenate(parts) for parts in zip(*made, strict=True))
-        self._truth = join_truths([truth_of(item, _vehicle(item)) for item in read])
+        self._truth = join_truths([truths(*run) for run in runs])
 
     def scenes(self, seeds: Seeds) -> Scenes:
         """Return the scenes of ``seeds``."""
         at = seeds % len(self._scenarios)
-        truth = GroundTruth(*(part[at] for part in self._truth))
-        return Scenes(self._lines[at], self._times[at], numbers_for(self.scenario, seeds), truth)
+        return Scenes(self._lines[at], self._times[at], numbers_for(self.scenario, seeds), self._truth.select(at))
 
     def scenario_of(self, seed: int) -> Scenario:
         """Return the scene of a seed as a complete scenario."""
@@ -113,22 +114,14 @@ def _edges(scenario: Scenario) -> dict[str, float]:
     assert scenario.target is not None
     sizes = [scenario.vehicle.get(f"scene.boxes[{number + 1}].length", 0.0) for number in range(BOX_COUNT)]
     free = [number + 1 for number, size in enumerate(sizes) if size == 0.0]
-    x, y, _ = scenario.target.pose
-    lines = sorted(edges(scenario.obstacles), key=lambda line: _distance(x, y, line.x1, line.y1, line.x2, line.y2))
+    target = Point(scenario.target.x, scenario.target.y)
+    lines = [line_box(edge.x1, edge.y1, edge.x2, edge.y2) for edge in edges(scenario.obstacles)]
+    lines.sort(key=lambda line: point_gap(target, line))
     found: dict[str, float] = {}
     for number, line in zip(free, lines, strict=False):
-        dx, dy = line.x2 - line.x1, line.y2 - line.y1
-        box = {"x": line.x1 + 0.5 * dx, "y": line.y1 + 0.5 * dy, "heading": math.atan2(dy, dx)}
-        box |= {"length": math.hypot(dx, dy), "width": EDGE_WIDTH}
+        box = line._replace(width=EDGE_WIDTH)._asdict()
         found |= {f"scene.boxes[{number}].{name}": value for name, value in box.items()}
     return found
-
-
-def _distance(x: float, y: float, x1: float, y1: float, x2: float, y2: float) -> float:
-    dx, dy = x2 - x1, y2 - y1
-    length = dx * dx + dy * dy
-    share = 0.0 if length == 0.0 else min(max(((x - x1) * dx + (y - y1) * dy) / length, 0.0), 1.0)
-    return math.hypot(x - x1 - share * dx, y - y1 - share * dy)
 
 
 def _study(scenario: Scenario) -> Study:
@@ -137,7 +130,3 @@ def _study(scenario: Scenario) -> Study:
 
 def _chunk(scenario: Scenario) -> Chunk:
     return Chunk(0, 0, np.empty((1, 0)), np.array([scenario.seed]))
-
-
-def _vehicle(scenario: Scenario) -> dict[str, float]:
-    return {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)} | scenario.vehicle

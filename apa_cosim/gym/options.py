@@ -5,10 +5,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
 from apa_cosim.gym.ids import Body
+from fmus.policy_fmu import ACTION_PERIOD
 from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
-
-DEFAULT_PERIOD = 0.2
-"""Between two actions [s]."""
 
 
 class Reward(NamedTuple):
@@ -31,7 +29,7 @@ class EnvironmentOptions(NamedTuple):
 
     body: Body | None = None
     """Equations of motion; None: double-track, in apa/World-v0 as drawn."""
-    period: float = DEFAULT_PERIOD
+    period: float = ACTION_PERIOD
     """Between two actions [s], a whole number of communication steps."""
     stop_time: float | None = None
     """When an episode is truncated [s]; None: that of the environment."""

@@ -13,6 +13,7 @@ from controller_fmu.policy.params import PolicySystem
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.parking.cases import BODIES
 from orchestrator.studies.parking.cases import KINDS as KIND_NAMES
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world.factors import FACTORS, NEIGHBOURS, SLOT
@@ -23,8 +24,6 @@ from orchestrator.studies.sweep.study.space import Factor
 
 PARALLEL, PERPENDICULAR = 0, 1
 """Choices of the factor ``kind``."""
-BODIES = {"kinematic": 0.0, "double_track": 1.0}
-"""Choices of the factor ``body``."""
 START = (
     Factor("ahead", "m", -1.0, 1.5, 4.0, "rear axle at the start, ahead of the slot's front end"),
     Factor("beside", "m", 0.9, 1.2, 1.6, "distance to the neighbours at the start"),
@@ -36,7 +35,7 @@ DRAWN = ("car", "side", "extra", "behind", "depth", "kerb_height")
 def slot_scenes(kind: int, body: str, stop_time: float, pedals: bool = False) -> SampledScenes:
     """Return scenes in which the car stands ahead of a slot of ``kind``, with ideal sensors and odometry."""
     factors = [*(factor for factor in SLOT if factor.name in DRAWN), *NEIGHBOURS, *START]
-    fixed = {"kind": float(kind), "body": BODIES[body]}
+    fixed = {"kind": float(kind), "body": _choice(body)}
     return SampledScenes(_with_pedals(slot_scenario(kind, stop_time), pedals), factors, fixed, _near_the_slot)
 
 
@@ -47,7 +46,7 @@ def world_scenes(body: str | None, stop_time: float, pedals: bool = False) -> Sa
     """
     scenario = world_scenario(int(PolicySystem.POLICY)).model_copy(update={"name": "world", "stop_time": stop_time})
     drawn = [factor for factor in FACTORS if body is None or factor.name != "body"]
-    fixed = {} if body is None else {"body": BODIES[body]}
+    fixed = {} if body is None else {"body": _choice(body)}
     return SampledScenes(_with_pedals(scenario, pedals), drawn, fixed, parameters)
 
 
@@ -63,6 +62,11 @@ def slot_scenario(kind: int, stop_time: float) -> Scenario:
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
         requirements=[*limits_beside_neighbours(GBT_SETS[number]), *library_requirements("no-contact")],
     )
+
+
+def _choice(body: str) -> float:
+    """Return the value of the factor ``body`` for equations of motion."""
+    return float(BODIES.index(body))
 
 
 def _with_pedals(scenario: Scenario, pedals: bool) -> Scenario:

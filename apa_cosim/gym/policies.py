@@ -6,11 +6,15 @@ from typing import Any, Protocol
 import numpy as np
 
 from apa_cosim.gym.spaces import Floats
+from fmus.policy_fmu import BadPolicy, count_actions
 from orchestrator.inputs.text.errors import BadInput
 
 
 class Policy(Protocol):
     """Acts for many cars at once."""
+
+    action_count: int
+    """2: speed and steering wheel; 3: pedals and steering wheel."""
 
     def __call__(self, observations: Floats) -> Floats:
         """Return the actions (cars, 2 or 3) for observations (cars, 24)."""
@@ -19,12 +23,12 @@ class Policy(Protocol):
 class RandomPolicy:
     """Draws every action evenly from its range: the baseline that any policy must beat."""
 
-    def __init__(self, seed: int = 0, actions: int = 2) -> None:
-        self._random, self._actions = np.random.default_rng(seed), actions
+    def __init__(self, seed: int = 0, action_count: int = 2) -> None:
+        self._random, self.action_count = np.random.default_rng(seed), action_count
 
     def __call__(self, observations: Floats) -> Floats:
         """Return actions that do not depend on what is observed."""
-        return self._random.uniform(-1.0, 1.0, (len(observations), self._actions)).astype(np.float32)
+        return self._random.uniform(-1.0, 1.0, (len(observations), self.action_count)).astype(np.float32)
 
 
 class OnnxPolicy:
@@ -34,18 +38,17 @@ class OnnxPolicy:
     """
 
     def __init__(self, file: Path) -> None:
-        try:
-            import onnxruntime
-        except ImportError as error:
-            raise BadInput("needs onnxruntime: install apa-cosim[onnx]", file=file) from error
         if not file.is_file():
             raise BadInput("no such file", file=file)
+        try:
+            self.action_count = count_actions(file)
+        except BadPolicy as error:
+            raise BadInput(str(error), file=file) from error
+        import onnxruntime
+
         settings = onnxruntime.SessionOptions()
         settings.intra_op_num_threads = 1
-        try:
-            self._session: Any = onnxruntime.InferenceSession(str(file), settings, providers=["CPUExecutionProvider"])
-        except Exception as error:
-            raise BadInput(f"is no ONNX model: {str(error).splitlines()[0]}", file=file) from error
+        self._session: Any = onnxruntime.InferenceSession(str(file), settings, providers=["CPUExecutionProvider"])
         self._input = self._session.get_inputs()[0].name
 
     def __call__(self, observations: Floats) -> Floats:

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from apa_cosim.gym.scene_source import Polygons
 from orchestrator.evaluation.verdict.geometry import CarOutline
-from orchestrator.evaluation.verdict.polygons import polygon_clearances
+from orchestrator.evaluation.verdict.polygons import Polygons, polygon_clearances
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 MAX_EXACT_CLEARANCE = 0.05
@@ -15,7 +14,7 @@ class PolygonClearance:
     """The clearance of one car, computed only where it is not known to be large."""
 
     def __init__(self, polygons: Polygons, car: CarOutline, pose: Array) -> None:
-        self._polygons, self._car = [list(corners) for corners in polygons], car
+        self._polygons, self._car = polygons, car
         self._reach = float(np.hypot(max(car.front, car.rear), car.half_width))
         self._pose, self._clearance = pose.copy(), self._exact(pose)
         self.smallest: float = self._clearance

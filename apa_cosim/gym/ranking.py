@@ -12,11 +12,12 @@ from apa_cosim.gym.episodes import Episodes
 from apa_cosim.gym.ids import IDS
 from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.policies import OnnxPolicy, Policy, RandomPolicy
-from apa_cosim.gym.recorded import CompiledSlave
+from apa_cosim.gym.recorded import CompiledInstance
 from apa_cosim.gym.scene_source import SceneSource
 from apa_cosim.runs import with_foreign
 from controller_fmu import System
 from fmus.compiled_episodes import RUNNING
+from fmus.policy_fmu import PEDALS
 from modelkit.variables import variables
 from orchestrator.evaluation.verdict.confidence import wilson
 from orchestrator.evaluation.verdict.summary import summarize
@@ -77,11 +78,12 @@ def score(system: str, name: str, seeds: Sequence[int], options: EnvironmentOpti
     """
     if name not in IDS:
         raise BadInput(f"no such environment{suggestion_or_choices(name, list(IDS))}", key=name)
-    source = scene_source(IDS[name], options)
     suffix = Path(system).suffix.lower()
     if system == RANDOM or suffix == ".onnx":
         policy = RandomPolicy() if system == RANDOM else OnnxPolicy(Path(system))
+        source = scene_source(IDS[name], options._replace(pedals=PEDALS[policy.action_count]))
         return Score(system, name, policy_outcomes(policy, source, seeds, options.period))
+    source = scene_source(IDS[name], options)
     if suffix == ".fmu":
         foreign = ImportedFmus({"controller": fmu_of(system)})
         return Score(system, name, [_run(source.scenario_of(seed), foreign) for seed in seeds])
@@ -97,10 +99,10 @@ def policy_outcomes(policy: Policy, source: SceneSource, seeds: Sequence[int], p
         which = np.arange(len(some))
         episodes.begin(which, some)
         while (episodes.progress == RUNNING).any():
-            episodes.advance(np.asarray(policy(episodes.observations.astype(np.float32)), dtype=np.float64))
+            episodes.advance(np.asarray(policy(episodes.observations), dtype=np.float64))
         ended = episodes.results(which)
-        durations, gaps = ended.numbers["duration"], ended.numbers["min_clearance"]
-        rows = zip(ended.outcomes, ended.reasons, durations.tolist(), (gaps < 0.0).tolist(), strict=True)
+        durations = ended.numbers["duration"].tolist()
+        rows = zip(ended.outcomes, ended.reasons, durations, ended.contacts.tolist(), strict=True)
         found += [SceneOutcome(*row) for row in rows]
     episodes.close()
     return found
@@ -137,4 +139,4 @@ def _run(scenario: Scenario, given: ImportedFmus) -> SceneOutcome:
 def _instance(name: str, scenario: Scenario, foreign: ImportedFmus, messages: Messages) -> FmuInstance:
     if name in foreign.files:
         return foreign.make_instance(name, foreign.files[name], scenario.parameters_for(name), messages.from_fmu)
-    return CompiledSlave(name, scenario.models[name], scenario.parameters_for(name))
+    return CompiledInstance(name, scenario.models[name], scenario.parameters_for(name))

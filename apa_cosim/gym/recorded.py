@@ -45,19 +45,19 @@ class RecordedEpisode(NamedTuple):
         """Return the episode as a run: all signals at all exchanges, and the verdict; ``log``: an MCAP file for it."""
         scenario = self.scenario
         vehicle, controller = (
-            CompiledSlave(name, scenario.models[name], scenario.parameters_for(name))
+            CompiledInstance(name, scenario.models[name], scenario.parameters_for(name))
             for name in ("vehicle", "controller")
         )
-        driven = DrivenSlave(controller, self.actions, scenario.step_ns, round(self.period * 1e9))
+        replayed = ReplayedInstance(controller, self.actions, scenario.step_ns, round(self.period * 1e9))
         try:
-            ran = run_instances(scenario, [vehicle, driven], Messages(), log=None if log is None else Path(log))
+            ran = run_instances(scenario, [vehicle, replayed], Messages(), log=None if log is None else Path(log))
         finally:
-            for instance in (vehicle, driven):
+            for instance in (vehicle, replayed):
                 instance.close()
         return Run(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
 
 
-class CompiledSlave:
+class CompiledInstance:
     """A model as machine code in this process, without an FMU."""
 
     has_variable_step = True
@@ -70,37 +70,37 @@ class CompiledSlave:
         self._library = load_model(model)
         self._memory = (ctypes.c_int64 * (memory_size(self._library) // 8 + 1))()
         self._params = np.array([float(value) for value in flatten(given)])
-        self._told, self._given = self.outputs.values.copy(), self.inputs.values.copy()
+        self._latest_outputs, self._latest_inputs = self.outputs.values.copy(), self.inputs.values.copy()
 
     def initialize(self, stop_ns: int) -> None:
         """Compute the state at time zero and the outputs that are valid then."""
-        self._library.model_start(self._memory, self._params.ctypes.data, self._told.ctypes.data)
+        self._library.model_start(self._memory, self._params.ctypes.data, self._latest_outputs.ctypes.data)
 
     def start(self) -> None:
         """Nothing to leave."""
 
     def fetch_outputs(self) -> None:
         """Copy the latest outputs."""
-        self.outputs.values[: len(self._told)] = self._told
+        self.outputs.values[: len(self._latest_outputs)] = self._latest_outputs
 
     def send_inputs(self) -> None:
         """Copy the inputs."""
-        self._given[:] = self.inputs.values[: len(self._given)]
+        self._latest_inputs[:] = self.inputs.values[: len(self._latest_inputs)]
 
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call the model's step."""
-        self._library.model_step(self._memory, self._given.ctypes.data, self._told.ctypes.data, dt_ns)
+        self._library.model_step(self._memory, self._latest_inputs.ctypes.data, self._latest_outputs.ctypes.data, dt_ns)
 
     def close(self) -> None:
         """Nothing to free."""
 
 
-class DrivenSlave:
+class ReplayedInstance:
     """The policy's controller, whose actions are those of an episode: the first one comes after the first step."""
 
     has_variable_step = True
 
-    def __init__(self, controller: CompiledSlave, actions: Array, first_ns: int, period_ns: int) -> None:
+    def __init__(self, controller: CompiledInstance, actions: Array, first_ns: int, period_ns: int) -> None:
         self._controller, self._actions, self._first_ns, self._period_ns = controller, actions, first_ns, period_ns
         self.name, self.identity = controller.name, controller.identity
         self.inputs, self.outputs, self.parameters = controller.inputs, controller.outputs, controller.parameters

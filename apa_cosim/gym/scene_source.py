@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import variables
+from orchestrator.evaluation.verdict.polygons import Polygons
 from orchestrator.evaluation.verdict.truth import CAR_KEYS, GroundTruth
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -25,9 +26,6 @@ TARGET = ("x", "y", "heading")
 SLOT = ("x", "y", "heading", "length", "width")
 Place = Callable[[dict[str, Array], Seeds], dict[str, Array]]
 """(values of all factors, seeds) -> columns by the names of a study's fields."""
-
-
-Polygons = Sequence[Sequence[tuple[float, float]]]
 
 
 class Scenes(NamedTuple):

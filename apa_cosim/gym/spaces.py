@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from controller_fmu.policy.model import OBSERVATION_LIMIT
 from controller_fmu.policy.signals import OBSERVATION_COUNT
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 Floats = NDArray[np.float32]
@@ -20,6 +21,13 @@ SHOWN_NUMBERS = (
     *("duration", "manoeuvres", "min_clearance", "steering_travel"),
     *("final.longitudinal_error", "final.lateral_error", "final.heading_error", "final.outline_margin"),
 )
+RENDER_MODES = ["rgb_array"]
+
+
+def check_render_mode(mode: str | None) -> None:
+    """Raise ``BadInput`` for a way of rendering that does not exist."""
+    if mode not in (None, *RENDER_MODES):
+        raise BadInput(f"{mode!r}: expected {', '.join(RENDER_MODES)}", key="render_mode")
 
 
 def observation_space() -> "Space[Floats]":

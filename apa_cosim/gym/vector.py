@@ -5,6 +5,7 @@ from typing import Any, Unpack
 
 import numpy as np
 from gymnasium.error import ResetNeeded
+from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
@@ -15,8 +16,15 @@ from apa_cosim.gym.episodes import Bools, Episodes, Integers, take_step
 from apa_cosim.gym.ids import Scenes
 from apa_cosim.gym.options import GivenOptions, options_of
 from apa_cosim.gym.recorded import RecordedEpisode
-from apa_cosim.gym.spaces import LARGEST_SEED, SCENE_SEED, Floats, action_space, observation_space
-from fmus.compiled_episodes import RUNNING
+from apa_cosim.gym.spaces import (
+    LARGEST_SEED,
+    RENDER_MODES,
+    SCENE_SEED,
+    Floats,
+    action_space,
+    check_render_mode,
+    observation_space,
+)
 from orchestrator.inputs.text.errors import BadInput
 
 Doubles = NDArray[np.float64]
@@ -43,9 +51,7 @@ class ParkingVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         if num_envs < 1 or threads < 1:
             raise BadInput(f"{num_envs} cars on {threads} threads: expected 1 or more of each", key="num_envs")
         self._mode = AutoresetMode(autoreset_mode)
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": 5, "autoreset_mode": self._mode}
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise BadInput(f"{render_mode!r}: expected rgb_array", key="render_mode")
+        check_render_mode(render_mode)
         given = options_of(options)
         self.num_envs, self.render_mode = num_envs, render_mode
         self.single_observation_space, self.single_action_space = observation_space(), action_space(given.pedals)
@@ -53,8 +59,9 @@ class ParkingVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._reward = given.reward
         self.episodes = Episodes(scene_source(scenes, given), num_envs, given.period, threads)
-        self._random = [np.random.default_rng() for _ in range(num_envs)]
-        self._over: Bools = np.ones(num_envs, dtype=bool)
+        fps = 1.0 / given.period
+        self.metadata = {"render_modes": RENDER_MODES, "render_fps": fps, "autoreset_mode": self._mode}
+        self._random = [np_random()[0] for _ in range(num_envs)]
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -71,37 +78,29 @@ class ParkingVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             raise BadInput(f"{len(chosen)} seeds for {len(which)} cars", key=SCENE_SEEDS)
         seeds = None if chosen is None else np.array([scene_seed(value) for value in chosen])
         self._begin(which, seeds)
-        return self._observations(), self._scene_seeds(which)
+        return self.episodes.observations, self._scene_seeds(which)
 
     def step(self, actions: Floats) -> tuple[Floats, Doubles, Bools, Bools, dict[str, Any]]:
         """Act for a period with all cars."""
-        over = self._over
-        if over.any() and (self._mode != AutoresetMode.NEXT_STEP or (self.episodes.progress == RUNNING)[over].any()):
-            raise ResetNeeded(f"cars {np.flatnonzero(over).tolist()[:5]} have no running episode: reset them first")
+        again = np.flatnonzero(self.episodes.is_reported)
+        if len(again) and self._mode != AutoresetMode.NEXT_STEP:
+            raise ResetNeeded(f"cars {again.tolist()[:5]} have no running episode: reset them first")
         if actions.shape != self.action_space.shape:
             raise BadInput(f"actions of shape {actions.shape}: expected {self.action_space.shape}")
         done = take_step(self.episodes, np.asarray(actions, dtype=np.float64), self._reward)
+        ended = np.flatnonzero(done.terminated | done.truncated)
         infos: dict[str, Any] = {}
-        ended = done.terminated | done.truncated
-        verdicts = [] if done.results is None else infos_of(done.results)
-        if self._mode == AutoresetMode.SAME_STEP:
-            if verdicts:
-                which = np.flatnonzero(ended)
-                for number, info in zip(which.tolist(), verdicts, strict=True):
-                    last = {"final_obs": self._observation(number), "final_info": info}
-                    infos = self._add_info(infos, last, number)
-                self._begin(which)
-                infos |= self._scene_seeds(which)
-            self._over = np.zeros(self.num_envs, dtype=bool)
-            return self._observations(), done.rewards, done.terminated, done.truncated, infos
-        for number, info in zip(np.flatnonzero(ended).tolist(), verdicts, strict=True):
+        last = self.episodes.observations
+        for number, info in zip(ended.tolist(), [] if done.results is None else infos_of(done.results), strict=True):
+            if self._mode == AutoresetMode.SAME_STEP:
+                info = {"final_obs": last[number], "final_info": info}
             infos = self._add_info(infos, info, number)
-        if over.any():
-            which = np.flatnonzero(over)
-            self._begin(which)
-            infos |= self._scene_seeds(which)
-        self._over = ended
-        return self._observations(), done.rewards, done.terminated, done.truncated, infos
+        if self._mode == AutoresetMode.SAME_STEP:
+            again = ended
+        if len(again):
+            self._begin(again)
+            infos |= self._scene_seeds(again)
+        return self.episodes.observations, done.rewards, done.terminated, done.truncated, infos
 
     def render(self) -> Any:
         """Return the scene of each car from above; None without ``render_mode``."""
@@ -129,21 +128,14 @@ class ParkingVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             raise BadInput(f"{len(seeds)} seeds for {self.num_envs} cars", key="seed")
         for number in which.tolist():
             if seeds[number] is not None:
-                self._random[number] = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seeds[number])))
+                self._random[number], _ = np_random(int(seeds[number]))
 
     def _begin(self, which: Integers, seeds: Integers | None = None) -> None:
         if seeds is None:
             seeds = np.array([self._random[number].integers(LARGEST_SEED) for number in which.tolist()])
         self.episodes.begin(which, seeds)
-        self._over[which] = False
 
     def _scene_seeds(self, which: Integers) -> dict[str, Any]:
         mask = np.zeros(self.num_envs, dtype=bool)
         mask[which] = True
         return {SCENE_SEED: np.where(mask, self.episodes.seeds, 0), f"_{SCENE_SEED}": mask}
-
-    def _observations(self) -> Floats:
-        return np.asarray(self.episodes.observations, dtype=np.float32)
-
-    def _observation(self, number: int) -> Floats:
-        return np.asarray(self.episodes.observations[number], dtype=np.float32)

@@ -14,10 +14,12 @@ their limits; brake. The car is parked when it stands within the tolerances; it 
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.clock import Clock, tick
+from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from controller_fmu.interface import Reason
 from controller_fmu.policy.params import PolicyParams, ToleranceParams
 from controller_fmu.policy.signals import ACTION_COUNT, ManualRequest, PolicyInput, PolicyOutput, PolicyPhase
-from modelkit.maths import clamp, is_finite, wrap_angle
+from modelkit.maths import clamp, is_finite
 from modelkit.vocabulary import Gear, Pose
 
 POSITION_SCALE = 10.0
@@ -29,8 +31,7 @@ MIN_MOTION_SPEED = 0.02
 class PolicyState(NamedTuple):
     """What has become of the drive, and the last outputs' memory."""
 
-    time_ns: int = 0
-    next_sample_ns: int = 0
+    clock: Clock = Clock()
     phase: int = PolicyPhase.STANDBY
     reason: int = Reason.NONE
     direction: int = 0
@@ -44,31 +45,21 @@ class PolicyState(NamedTuple):
 
 def policy_initialize(params: PolicyParams) -> tuple[PolicyState, PolicyOutput]:
     """Return the controller before its first sample."""
-    state = PolicyState()
-    if not _is_usable(params):
-        refused = PolicyOutput(brake_request=True, phase=PolicyPhase.FAILED, reason=Reason.BAD_PARAMETER)
-        state = PolicyState(phase=PolicyPhase.FAILED, reason=Reason.BAD_PARAMETER, outputs=refused)
-    return state, state.outputs
+    if _is_usable(params):
+        return PolicyState(), PolicyOutput()
+    refused = PolicyOutput(brake_request=True, phase=PolicyPhase.FAILED, reason=Reason.BAD_PARAMETER)
+    return PolicyState(Clock(usable=False), refused.phase, refused.reason, outputs=refused), refused
 
 
 def policy_step(
     state: PolicyState, inputs: PolicyInput, params: PolicyParams, dt_ns: int
 ) -> tuple[PolicyState, PolicyOutput]:
     """Return (state, outputs) ``dt_ns`` later: it acts at the instants k * sample_time with what holds then."""
-    end_ns = state.time_ns + dt_ns
-    if state.reason == Reason.BAD_PARAMETER or state.next_sample_ns >= end_ns:
-        return state._replace(time_ns=end_ns), state.outputs
-    period_ns = math.floor(params.sample_time * 1e9 + 0.5)
-    samples = (end_ns - state.next_sample_ns + period_ns - 1) // period_ns
-    state = _sample(state._replace(action=inputs.action), inputs, params)
-    return state._replace(time_ns=end_ns, next_sample_ns=state.next_sample_ns + samples * period_ns), state.outputs
-
-
-def pose_error(pose: Pose, target: Pose) -> Pose:
-    """Return a pose in the frame of the target: along [m], to its left [m], turned [rad]."""
-    cos, sin = math.cos(target.heading), math.sin(target.heading)
-    dx, dy = pose.x - target.x, pose.y - target.y
-    return Pose(cos * dx + sin * dy, cos * dy - sin * dx, wrap_angle(pose.heading - target.heading))
+    clock, samples, _ = tick(state.clock, params, dt_ns)
+    state = state._replace(clock=clock)
+    if samples > 0:
+        state = _sample(state._replace(action=inputs.action), inputs, params)
+    return state, state.outputs
 
 
 def _sample(state: PolicyState, inputs: PolicyInput, params: PolicyParams) -> PolicyState:
@@ -77,7 +68,7 @@ def _sample(state: PolicyState, inputs: PolicyInput, params: PolicyParams) -> Po
         failed = failed._replace(manoeuvres=state.manoeuvres, cost_to_go=state.outputs.cost_to_go)
         failed = failed._replace(observation=state.outputs.observation)
         return state._replace(phase=PolicyPhase.FAILED, reason=Reason.BAD_INPUT, outputs=failed)
-    error = pose_error(inputs.odometry, params.target)
+    error = to_slot(inputs.odometry, SlotFrame(params.target))
     state = _count_manoeuvres(state, inputs.measured_speed)
     state = _next_phase(state, inputs, error, params)
     lever = state.lever
@@ -144,31 +135,20 @@ def _outputs(state: PolicyState, inputs: PolicyInput, error: Pose, params: Polic
 
 
 def _observation(inputs: PolicyInput, error: Pose, params: PolicyParams) -> tuple[float, ...]:
-    slot = pose_error(Pose(params.slot.x, params.slot.y, params.slot.heading), params.target)
+    slot = to_slot(Pose(params.slot.x, params.slot.y, params.slot.heading), SlotFrame(params.target))
     length, width = params.slot.length, params.slot.width
     if length <= 0.0:
         slot = Pose()
     far = params.car.ultrasonic.max_range
-    ranges = inputs.ultrasonic
-    return (
+    vehicle = (
         _scale(error.x, POSITION_SCALE),
         _scale(error.y, POSITION_SCALE),
         math.cos(error.heading),
         math.sin(error.heading),
         _scale(inputs.measured_speed, params.action.max_speed),
         _scale(inputs.steering_wheel_angle, params.car.steering.angle_limit),
-        _scale(ranges[0], far),
-        _scale(ranges[1], far),
-        _scale(ranges[2], far),
-        _scale(ranges[3], far),
-        _scale(ranges[4], far),
-        _scale(ranges[5], far),
-        _scale(ranges[6], far),
-        _scale(ranges[7], far),
-        _scale(ranges[8], far),
-        _scale(ranges[9], far),
-        _scale(ranges[10], far),
-        _scale(ranges[11], far),
+    )
+    known_slot = (
         _scale(slot.x, POSITION_SCALE),
         _scale(slot.y, POSITION_SCALE),
         _scale(length, POSITION_SCALE),
@@ -176,6 +156,7 @@ def _observation(inputs: PolicyInput, error: Pose, params: PolicyParams) -> tupl
         math.cos(slot.heading),
         math.sin(slot.heading),
     )
+    return vehicle + tuple(_scale(measured, far) for measured in inputs.ultrasonic) + known_slot
 
 
 def _scale(value: float, scale: float) -> float:

@@ -31,7 +31,8 @@ class PolicySlave(ModelSlave):
 
         def step_with_policy(state: Any, inputs: Any, params: Any, dt_ns: int) -> Any:
             action = state.action
-            if state.time_ns >= dt_ns and (state.time_ns - dt_ns) % period_ns == 0:
+            time_ns = state.clock.time_ns
+            if time_ns >= dt_ns and (time_ns - dt_ns) % period_ns == 0:
                 action = policy(state.outputs.observation)
             return step(state, inputs._replace(action=action), params, dt_ns)
 

@@ -140,7 +140,7 @@ def test_a_recorded_episode_has_the_bits_of_the_python_models() -> None:
     driven(env, 10, seed=2)
     compiled = env.episode().run()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recorded, "CompiledSlave", ModelInstance)
+        patch.setattr(recorded, "CompiledInstance", ModelInstance)
         python = env.episode().run()
     assert all((compiled[name] == python[name]).all() or np.isnan(python[name]).any() for name in python.signals)
 
@@ -180,17 +180,48 @@ def test_contact_ends_an_episode_at_once(tmp_path: Path) -> None:
     assert run.outcome == "not_parked"
 
 
+def ahead_to_the_end(env: ParkingEnv) -> Any:
+    """Return the last period of an episode in which the car drives straight ahead."""
+    env.reset(seed=0)
+    while True:
+        found = env.step(np.array([0.8, 0.0], dtype=np.float32))
+        if found[2] or found[3]:
+            return found
+
+
 def test_contact_with_a_polygon_is_that_of_the_verdict(case: Path) -> None:
     env = ParkingEnv("tpcap", files=[case], body="kinematic")
-    env.reset(seed=0)
-    for _ in range(200):
-        *_, over, _, info = env.step(np.array([0.8, 0.0], dtype=np.float32))
-        if over:
-            break
+    *_, info = ahead_to_the_end(env)
     assert info["reason"] == "contact"
     summary = env.episode().run().summary
     assert summary.duration == info["summary"]["duration"]
     assert summary.penetration == pytest.approx(-info["summary"]["min_clearance"], abs=1e-12)
+
+
+def test_contact_at_the_stop_time_with_a_polygon_that_no_sensor_measures(case: Path) -> None:
+    wall = [(8.0 - 0.5 * number, -3.0) for number in range(41)] + [(-12.0, -4.0), (8.0, -4.0)]
+    corners = ", ".join(f"{x}, {y}" for x, y in wall)
+    case.write_text(f"-9, 4, 0, 0, 0, 0, 2, {len(wall)}, 3, {corners}, 6,-4, 9,-4, 8,4")
+    first = ahead_to_the_end(ParkingEnv("tpcap", files=[case], body="kinematic"))
+    stop_time = first[4]["summary"]["duration"]
+    last = ahead_to_the_end(ParkingEnv("tpcap", files=[case], body="kinematic", stop_time=stop_time))
+    assert is_same(first, last)
+    assert last[4]["reason"] == "contact"
+
+
+def test_an_episode_that_begins_in_contact_ends_with_its_first_step(tmp_path: Path) -> None:
+    file = tmp_path / "near.yaml"
+    file.write_text(SLOT.format(x=5.0))
+    env = ParkingEnv("tpcap", files=[file])
+    env.reset(seed=0)
+    _, reward, over, truncated, info = env.step(np.zeros(2, dtype=np.float32))
+    assert (reward, over, truncated, info["reason"]) == (-20.0, True, False, "contact")
+    with pytest.raises(ResetNeeded):
+        env.step(np.zeros(2, dtype=np.float32))
+    cars = ParkingVectorEnv(2, "tpcap", files=[file])
+    cars.reset(seed=0)
+    for ends in (True, False, True):
+        assert cars.step(np.zeros((2, 2), dtype=np.float32))[2].tolist() == [ends] * 2
 
 
 def test_a_car_that_leaves_the_place_ends_failed() -> None:
@@ -298,6 +329,12 @@ def test_the_picture_shows_the_car_where_it_is() -> None:
     shown = [np.argwhere((image == blue).all(axis=2)) for image in (before, after)]
     assert all(len(pixels) > 1000 for pixels in shown)
     assert shown[0].mean(axis=0) != pytest.approx(shown[1].mean(axis=0), abs=1.0)
+
+
+def test_a_video_is_as_fast_as_the_car() -> None:
+    assert ParkingEnv().metadata["render_fps"] == 5.0
+    assert ParkingEnv(period=0.1).metadata["render_fps"] == 10.0
+    assert ParkingVectorEnv(period=0.1).metadata["render_fps"] == 10.0
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from apa_cosim.gym.catalogue import scene_source
 from apa_cosim.gym.environment import ParkingEnv
 from apa_cosim.gym.options import EnvironmentOptions
 from apa_cosim.gym.policies import OnnxPolicy
-from apa_cosim.gym.ranking import for_system
+from apa_cosim.gym.ranking import for_system, score
 from apa_cosim.runs import load_scenario, run
 from fmus.policy_fmu import BadPolicy, build_policy_fmu, count_actions
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -91,7 +91,15 @@ def test_a_new_controller_of_a_policy_runs_and_knows_target_and_slot(policy: Pat
 
 
 def test_a_policy_of_three_actions_treads_the_pedals(tmp_path: Path) -> None:
-    assert count_actions(network(tmp_path / "pedals.onnx", actions=3)) == 3
+    file = network(tmp_path / "pedals.onnx", actions=3)
+    assert count_actions(file) == 3
+    (ranked,) = score(str(file), "apa/Parallel-v0", [1], EnvironmentOptions("kinematic")).outcomes
+    env, policy, over, cut = ParkingEnv(body="kinematic", pedals=True), OnnxPolicy(file), False, False
+    seen, _ = env.reset(options={"scene_seed": 1})
+    while not (over or cut):
+        seen, _, over, cut, info = env.step(policy(seen[None])[0])
+    assert not cut
+    assert (ranked.reason, ranked.duration) == (info["reason"], info["summary"]["duration"])
 
 
 def test_what_is_no_policy_is_refused(policy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,14 +109,14 @@ def test_what_is_no_policy_is_refused(policy: Path, tmp_path: Path, capsys: pyte
     for file in wrong:
         with pytest.raises(BadPolicy):
             count_actions(file)
+        with pytest.raises(BadInput, match=file.name):
+            OnnxPolicy(file)
         assert apa(["new", "controller", "learned", "--from", str(file), "--out", str(tmp_path)]) == 2
     assert "policy of 24 observations" in capsys.readouterr().err
     assert apa(["new", "controller", "learned", "--from", "none.onnx", "--out", str(tmp_path)]) == 2
     assert apa(["new", "vehicle", "learned", "--from", str(policy), "--out", str(tmp_path)]) == 2
     assert apa(["new", "controller", "learned", "--from", str(policy), "--period=0", "--out", str(tmp_path)]) == 2
     assert not (tmp_path / "learned").exists()
-    with pytest.raises(BadInput, match=r"text\.onnx"):
-        OnnxPolicy(text)
 
 
 @pytest.mark.slow

@@ -354,7 +354,6 @@ typedef enum { GOES_ON, AT_STOP_TIME, AT_STANDSTILL, BROKEN_OFF } Progress;
 typedef struct {
     Runner runner;
     Course course;
-    Progress progress;
     Place *given, *seen;
     Place broken;
 } Episode;
@@ -414,20 +413,22 @@ LIBRARY_EXPORT Episodes *episodes_open(const Access *access, int64_t count) {
     return all;
 }
 
-/* One exchange: note what is kept, and whether the run is over. */
-static void look_at(const Access *access, Episode *episode, double *row) {
+/* One exchange: note what is kept; returns whether the run is over. */
+static Progress look_at(const Access *access, Episode *episode, double *row) {
     Runner *runner = &episode->runner;
+    Progress progress;
     End end;
     int over;
     exchange(runner, &episode->course);
     note(runner, &episode->course, row + 2);
     over = is_over(runner, &episode->course, &end);
-    episode->progress = is_in(look(episode->broken), access->values) ? BROKEN_OFF
-                        : !over                                      ? GOES_ON
-                        : end == STANDSTILL                          ? AT_STANDSTILL
-                                                                     : AT_STOP_TIME;
-    row[0] = (double)(episode->progress == AT_STANDSTILL ? STANDSTILL : STOP_TIME);
+    progress = is_in(look(episode->broken), access->values) ? BROKEN_OFF
+               : !over                                      ? GOES_ON
+               : end == STANDSTILL                          ? AT_STANDSTILL
+                                                            : AT_STOP_TIME;
+    row[0] = (double)(progress == AT_STANDSTILL ? STANDSTILL : STOP_TIME);
     row[1] = (double)time_of(&episode->course);
+    return progress;
 }
 
 static void show(const Access *access, const Episode *episode, double *seen) {
@@ -452,13 +453,12 @@ LIBRARY_EXPORT int64_t episodes_begin(Episodes *all, int64_t count, const int64_
         if (initialize(&episode->runner, params + i * width, faults + i * batch->fault_count * FAULT_NUMBERS, time[0]))
             return -1;
         begin_notes(&episode->runner, row + 2);
-        look_at(all->access, episode, row);
-        if (episode->progress == GOES_ON) {
+        progress[n] = look_at(all->access, episode, row);
+        if (progress[n] == GOES_ON) {
             advance(&episode->runner, &episode->course);
-            look_at(all->access, episode, row);
+            progress[n] = look_at(all->access, episode, row);
         }
         show(all->access, episode, seen + n * all->access->seen_count);
-        progress[n] = episode->progress;
     }
     return 0;
 }
@@ -476,11 +476,10 @@ LIBRARY_EXPORT void episodes_advance(Episodes *all, int64_t first, int64_t end, 
         for (int64_t k = 0; k < access->given_count; k++)
             library_write((unsigned char *)episode->given[k].at, episode->given[k].kind,
                           given[n * access->given_count + k]);
-        while (episode->progress == GOES_ON && time_of(&episode->course) < until) {
+        while (progress[n] == GOES_ON && time_of(&episode->course) < until) {
             advance(&episode->runner, &episode->course);
-            look_at(access, episode, row);
+            progress[n] = look_at(access, episode, row);
         }
         show(access, episode, seen + n * access->seen_count);
-        progress[n] = episode->progress;
     }
 }

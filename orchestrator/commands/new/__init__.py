@@ -5,7 +5,8 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from string import Template
 
@@ -36,8 +37,6 @@ SUFFIX = ".txt"
 RESERVED = ("apa_cosim", "fmus", "modelkit", "orchestrator", "pythonfmu", "vehicle_fmu", "controller_fmu")
 BASE = "guo2015-case4"
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
-POLICY_PERIOD = 0.2
-"""Between two actions of a policy [s]: that of the environments."""
 START_RANGE = 0.1
 """A new study varies the start pose by so much to either side [m]."""
 
@@ -53,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--from", dest="policy", type=Path, metavar="ONNX", help="controller: a learned policy")
     parser.add_argument(
-        "--period", type=float, default=POLICY_PERIOD, metavar="S", help="--from: between actions (0.2)"
+        "--period", type=float, metavar="S", help="--from: between actions (default: that of the environments, 0.2)"
     )
     parser.add_argument("--controller", metavar="FMU", help="scenario: a third-party FMU as controller")
     parser.add_argument("--vehicle", metavar="FMU", help="scenario: a third-party FMU as vehicle")
@@ -111,41 +110,45 @@ def _file_name(name: str) -> str:
 
 def _package(kind: str, out: Path, name: str) -> int:
     """Write a package: law, scenario, tests."""
-    folder = out / name
-    if folder.exists():
-        raise BadInput("is there already", file=folder)
-    try:
-        for template in sorted((TEMPLATE_FOLDER / kind).glob(f"*{SUFFIX}")):
-            _write(template, folder / template.name.removesuffix(SUFFIX), name)
-    except OSError:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    trust_folder(folder)
+    with _new_folder(out / name) as folder:
+        _write_templates(kind, folder, name)
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
 
-def _policy(out: Path, name: str, network: Path, period: float) -> int:
+def _policy(out: Path, name: str, network: Path, given_period: float | None) -> int:
     """Write the FMU of a learned policy, a scenario and a README."""
-    from fmus.policy_fmu import BadPolicy, build_policy_fmu
+    from fmus.policy_fmu import ACTION_PERIOD, BadPolicy, build_policy_fmu
 
-    folder = out / name
+    period = ACTION_PERIOD if given_period is None else given_period
+    with _new_folder(out / name) as folder:
+        if not network.is_file():
+            raise BadInput("no such file", file=network)
+        try:
+            build_policy_fmu(name, network, period, folder)
+        except BadPolicy as error:
+            raise BadInput(str(error), file=network) from error
+        _write_templates("policy", folder, name, period=f"{period:g}")
+    print(f"{folder}: {name}.fmu, scenario, README\nnext: apa run {folder}/scenario.yaml")
+    return 0
+
+
+@contextmanager
+def _new_folder(folder: Path) -> Iterator[Path]:
+    """Give a folder that is to be written, then trust it; nothing of it remains where that fails."""
     if folder.exists():
         raise BadInput("is there already", file=folder)
-    if not network.is_file():
-        raise BadInput("no such file", file=network)
     try:
-        build_policy_fmu(name, network, period, folder)
-        for template in sorted((TEMPLATE_FOLDER / "policy").glob(f"*{SUFFIX}")):
-            _write(template, folder / template.name.removesuffix(SUFFIX), name, period=f"{period:g}")
-    except BadPolicy as error:
-        raise BadInput(str(error), file=network) from error
+        yield folder
     except OSError:
         shutil.rmtree(folder, ignore_errors=True)
         raise
     trust_folder(folder)
-    print(f"{folder}: {name}.fmu, scenario, README\nnext: apa run {folder}/scenario.yaml")
-    return 0
+
+
+def _write_templates(kind: str, folder: Path, name: str, **words: str) -> None:
+    for template in sorted((TEMPLATE_FOLDER / kind).glob(f"*{SUFFIX}")):
+        _write(template, folder / template.name.removesuffix(SUFFIX), name, **words)
 
 
 def _third_party(arguments: argparse.Namespace) -> dict[str, str]:

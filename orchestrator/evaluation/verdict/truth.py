@@ -39,6 +39,10 @@ class GroundTruth(NamedTuple):
         """Return the truth of ``count`` runs in which all is as in this one."""
         return GroundTruth(*(np.repeat(part, count, axis=0) for part in self))
 
+    def select(self, rows: NDArray[np.int64]) -> "GroundTruth":
+        """Return the truth of the runs ``rows``."""
+        return GroundTruth(*(part[rows] for part in self))
+
     def has(self) -> dict[str, Bools]:
         """Return for each run whether its scenario has a target, a slot, a kerb at the slot."""
         return {

@@ -85,15 +85,15 @@ def compile_models(measures: tuple[Measure, ...], scenario: Scenario, choices: C
     """
     faults = tuple(item.inputs for item in fault_receivers(scenario))
     with _compiling:
-        return _compile_rows(tuple(scenario.models.items()), measures, faults, choices, _ending(scenario))
+        return _compile_rows(tuple(scenario.models.items()), measures, faults, choices, stop_condition_of(scenario))
 
 
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    models, kept = dict(scenario.models), [_signal_to_record(item) for item in job.measures]
+    models, kept = dict(scenario.models), [signal_to_record(item) for item in job.measures]
     choices = choices_of(scenario, arrays(job, chunk)[0])
-    return explanation(models, study_slices(models, signals_to_read(_ending(scenario), kept), dict(choices)))
+    return explanation(models, study_slices(models, signals_to_read(stop_condition_of(scenario), kept), dict(choices)))
 
 
 @lru_cache
@@ -104,7 +104,7 @@ def _compile_rows(
     choices: Choices | None,
     ending: StopCondition,
 ) -> Rows:
-    whole, kept = dict(models), [_signal_to_record(item) for item in measures]
+    whole, kept = dict(models), [signal_to_record(item) for item in measures]
     complete = compile_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
@@ -113,10 +113,12 @@ def _compile_rows(
     return StudyRows(complete, compile_rows(whole, ending, kept, faults, code))
 
 
-def _ending(scenario: Scenario) -> StopCondition:
+def stop_condition_of(scenario: Scenario) -> StopCondition:
+    """Return when the runs of ``scenario`` are over."""
     end = scenario.stop_condition
     return StopCondition(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
 
 
-def _signal_to_record(measure: Measure) -> RecordedSignal:
+def signal_to_record(measure: Measure) -> RecordedSignal:
+    """Return what is kept of a run for a measure."""
     return RecordedSignal(measure.how, measure.signal, None if measure.when is None else SampleTime(*measure.when))

@@ -23,11 +23,12 @@ from modelkit.vocabulary import Pose
 LANDMARK_VERTICES = 2 * LANDMARKS
 REMEMBERED = 8
 """Unexplained echoes that are kept for planning."""
-BEYOND = 10.0
+ROW_EXTENSION = 10.0
 """The row and the road go on for this far [m]."""
 BEHIND_VEHICLE = 0.6
 """A gap of unknown depth is taken to end this far [m] behind the vehicle in it."""
 SLOT_QUADS = 7
+"""Rectangles about a slot: neighbours, what is behind it, row and road."""
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
 INSIDE_MARGIN = 0.3
@@ -196,9 +197,9 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
         Quad(first, a.front, a.end, max(end, a.front + body), True),
         Quad(b.start, b.front, last, max(end, b.front + body), True),
         Quad(a.end, end, b.start, end, True),
-        Quad(first - BEYOND, a.front, first, a.front, True),
-        Quad(last, b.front, last + BEYOND, b.front, True),
-        Quad(first - BEYOND, road.y, last + BEYOND, road.y, True),
+        Quad(first - ROW_EXTENSION, a.front, first, a.front, True),
+        Quad(last, b.front, last + ROW_EXTENSION, b.front, True),
+        Quad(first - ROW_EXTENSION, road.y, last + ROW_EXTENSION, road.y, True),
         Quad(road.x, road.y, road.x, min(a.front, b.front), True),
     )
 

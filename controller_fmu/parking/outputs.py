@@ -54,7 +54,7 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
 
 
 def prompt_of(memory: ParkingMemory) -> int:
-    """Return what the driver is asked for."""
+    """Return the prompt to the driver."""
     state = memory.state
     if state == ParkingState.PARKED or state == ParkingState.FAILED:
         return Prompt.STOP

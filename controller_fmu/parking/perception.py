@@ -45,8 +45,8 @@ MAX_MONITORED_RANGE = 1.5
 DISPLACED = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""
-HALF_SPACING = 0.25
-"""Half of the distance of two sensors in a bumper [m]."""
+HALF_SENSOR_SPACING = 0.25
+"""Half of the distance [m] of the two middle sensors of a bumper, at y = +-0.25 m (``modelkit.car``)."""
 MAX_REST = 0.3
 """What moves more slowly [m/s] stands: people walk at 0.5 m/s and more."""
 SAME_GAP = 0.5
@@ -90,7 +90,7 @@ def _with_tracks(
 def _with_facing(
     landmarks: tuple[Landmark, ...], tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
 ) -> tuple[Landmark, ...]:
-    """Return the landmarks with surfaces at rest that two sensors of a bumper hear elsewhere than map and plan say."""
+    """Return the landmarks with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan."""
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     for number in range(BUMPER_SENSORS):
@@ -112,7 +112,7 @@ def _with_facing(
 
 
 def is_at_rest(track: ObjectTrack) -> bool:
-    """Return whether a track is of something that stands, heard often enough to tell."""
+    """Return whether a track is confirmed by enough echoes, and its object stands."""
     return track.status == TrackStatus.CONFIRMED and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
 
 
@@ -160,7 +160,7 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
         unknown,
         ux,
         uy,
-        HALF_SPACING if track.is_side and not unknown else 0.0,
+        HALF_SENSOR_SPACING if track.is_side and not unknown else 0.0,
     )
 
 

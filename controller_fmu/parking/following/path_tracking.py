@@ -31,6 +31,7 @@ MIN_REMAINING = 0.03
 STOP_LEARNING_RATE = 0.6
 """Fraction of the last stop's error that the next stop makes up for."""
 MAX_STOP_CORRECTION = 0.02
+"""[m]"""
 RECOVERY_DISTANCE = 0.5
 """Distance [m] over which a lateral error inside a bend is taken back by what the steering has left."""
 FOOT_ITERATIONS = 2

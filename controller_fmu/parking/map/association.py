@@ -44,7 +44,7 @@ OPEN_EXTENSION = 1.5
 """Beyond an open end echoes of the same line are expected for this far [m]: the range of monitored echoes."""
 BODY_BETWEEN = 1.0
 """A segment shorter than this [m] may stand for a narrow body anywhere on it (a hitch): a sensor that sees part of it
-tells nothing, so what has come between two cones is kept."""
+contradicts nothing, so what has come between two cones is kept."""
 WELL_IN_VIEW = 0.87
 """A point counts as surely in view within this fraction of the half cone: the mounting errs by some degrees."""
 
@@ -171,8 +171,8 @@ def is_contradicted(
         return False
     if landmark.type == LandmarkType.SEGMENT:
         is_short = length_of(landmark) < BODY_BETWEEN
-        tells = _is_all_in_view(landmark, sensor) if is_short else predicted.origin == EchoOrigin.INTERIOR
-        if not tells:
+        decides = _is_all_in_view(landmark, sensor) if is_short else predicted.origin == EchoOrigin.INTERIOR
+        if not decides:
             return False
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION

@@ -64,8 +64,8 @@ SAME_OVERLAP = 0.3
 """Two sides are one if they overlap by this fraction of the shorter."""
 MIN_SURE_LENGTH = 0.5
 MAX_TURN_SIGMA = 0.08
-"""A segment longer [m] than the one whose direction is known less well [rad] than the other is two faces of a body,
-heard in a turn."""
+"""A segment longer than ``MIN_SURE_LENGTH`` [m] whose direction has a larger standard deviation [rad] is two faces of a
+body, measured in a turn."""
 MAX_MISFIT = 4.0
 """Mean squared residual over the variance of a chain that no segment explains."""
 
@@ -152,7 +152,7 @@ def finish_chain(
     ends_at_edge: bool,
     params: MappingParams,
 ) -> tuple[Landmark, ...]:
-    """Return the landmarks with what a chain that has ended tells."""
+    """Return the landmarks with the fit of a chain that has ended."""
     if chain.used < MIN_ECHOES:
         return landmarks
     return fit_chain(landmarks, chain, reading, ends_at_edge, params).landmarks
@@ -311,7 +311,7 @@ def predicted(segment: Landmark, x: float, y: float) -> float:
 def _put(
     landmarks: tuple[Landmark, ...], chain: EchoChain, fit: SegmentFit, echoes: int, params: MappingParams
 ) -> ChainUpdate:
-    """Return landmarks and chain with a chain's landmark set: its own renewed, or a new one.
+    """Return landmarks and chain with a chain's landmark set: the chain's renewed, or a new one.
 
     A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
     unsure direction is none: the chain went round a corner. A direction is that of the chain's middle; from there to
@@ -324,15 +324,16 @@ def _put(
         return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     if length_of(new) < POINT_LENGTH:
         new = as_point(new)
-    own = chain.landmark
-    other = same_side(landmarks, new, own, params)
+    index = chain.landmark
+    other = same_side(landmarks, new, index, params)
     chain = chain._replace(fitted=chain.used)
     if other >= 0 and is_better(landmarks[other], new):
-        rest = replace_landmark(landmarks, own, Landmark()) if own >= 0 else landmarks
+        rest = replace_landmark(landmarks, index, Landmark()) if index >= 0 else landmarks
         return ChainUpdate(rest, chain._replace(landmark=-1))
-    if other >= 0 and own >= 0:
+    if other >= 0 and index >= 0:
         landmarks = replace_landmark(landmarks, other, Landmark())
-    index = own if own >= 0 else (other if other >= 0 else free_index(landmarks))
+    if index < 0:
+        index = other if other >= 0 else free_index(landmarks)
     return ChainUpdate(replace_landmark(landmarks, index, new), chain._replace(landmark=index))
 
 
@@ -343,13 +344,13 @@ def chain_path(chain: EchoChain, echoes: int) -> float:
     return math.sqrt((last.x - first.x) * (last.x - first.x) + (last.y - first.y) * (last.y - first.y))
 
 
-def same_side(landmarks: tuple[Landmark, ...], new: Landmark, own: int, params: MappingParams) -> int:
-    """Return the segment of the map that a new one is another look at, but not its ``own``; -1: none."""
+def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params: MappingParams) -> int:
+    """Return which segment of the map, other than number ``index``, is the same side as a new one; -1: none."""
     if new.type != LandmarkType.SEGMENT:
         return -1
     for number in range(LANDMARKS):
         other = landmarks[number]
-        if number != own and other.type == LandmarkType.SEGMENT and math.cos(other.heading - new.heading) > 0.0:
+        if number != index and other.type == LandmarkType.SEGMENT and math.cos(other.heading - new.heading) > 0.0:
             turn = wrap_angle(other.heading - new.heading)
             a = start_point(new)
             b = end_point(new)

@@ -1,4 +1,4 @@
-"""Chains of echoes: what a sensor heard of one body in a row, as far as ranges can tell bodies apart.
+"""Chains of echoes: what a sensor measured of one body in a row, as far as ranges can tell bodies apart.
 
 The range to a body at rest changes by at most sin(cone) per metre that the sensor moves across its axis; an echo that
 differs by more comes from another body. A chain that ends in a farther echo, or in none, has passed the body's edge;
@@ -22,7 +22,7 @@ LOST_DISTANCE = 0.25
 """Without an echo over this [m] and ``LOST_ECHOES`` cycles the edge is passed."""
 LOST_ECHOES = 3
 MAX_TURN_COS = 0.95
-"""A chain ends when the sensor's axis has turned by 18 deg: it hears another side."""
+"""A chain ends when the sensor's axis has turned by 18 deg: it measures another side."""
 
 
 class ChainEcho(NamedTuple):

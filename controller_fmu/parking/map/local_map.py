@@ -111,7 +111,7 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
 
 
 def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
-    """Return the map after a reading of a sensor on a flank, which hears sides as it passes: chains of echoes."""
+    """Return the map after a reading of a sensor on a flank, which passes sides: chains of echoes."""
     at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
     reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
     event = chain_event(local_map.chains[at], reading)
@@ -128,7 +128,7 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
 
 
 def _use_bumper(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
-    """Return the map after a reading of a sensor in a bumper, which approaches what it hears: windows of echoes."""
+    """Return the map after a reading of a sensor in a bumper, which approaches what it measures: windows of echoes."""
     status = measurement.status
     window = local_map.windows[measurement.number]
     if status == ReadingStatus.ECHO:

@@ -1,6 +1,6 @@
 """A segment by least squares on the ranges of a chain of echoes: line and both ends at once (Gauss-Newton).
 
-In a frame along the segment an echo heard at (u, v), v > 0 on the sensor's side, comes from the nearest point t of it:
+In a frame along the segment an echo at (u, v), v > 0 on the side of the sensor, comes from the nearest point t of it:
 
     h = sqrt((u - t)2 + v2),  t = u clamped to [start, end]
     dh = -(v / h) (dc + t dq) - (u - t) / h dt
@@ -18,7 +18,9 @@ from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from modelkit.maths import wrap_angle
 
 ITERATIONS = 5
+"""Of Gauss and Newton."""
 ROBUST_SIGMA = 3.0
+"""Standard deviations."""
 ASKEW_SIGMA = 0.15
 """Sides along a sensor's path are within 9 deg of it (cars askew, a pass that is not parallel)."""
 MAX_TURN = 0.3
@@ -28,7 +30,7 @@ MAX_SHIFT = 0.5
 SURFACE_DEVIATION = 0.01
 """Standard deviation [m] of a side from a straight line, and of where its sensor is mounted."""
 LEAST_WEIGHT = 1e-9
-"""Of an unknown that no echo tells anything of."""
+"""Of an unknown that no echo determines."""
 MIN_EXTENT = 0.02
 """Shortest segment [m]."""
 
@@ -138,7 +140,7 @@ def _normal_equations(
 
 
 def _echo_row(u: float, v: float, measured: float, segment: Landmark, variance: float) -> EchoRow:
-    """Return the row of an echo heard at (u, v) [m] in the segment's frame; its weight is robust."""
+    """Return the row of an echo measured at (u, v) [m] in the segment's frame; its weight is robust."""
     t = min(max(u, segment.start), segment.end)
     h = max(math.sqrt((u - t) * (u - t) + v * v), MIN_EXTENT)
     residual = measured - h

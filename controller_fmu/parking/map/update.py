@@ -111,7 +111,7 @@ def update_with_feature(landmark: Landmark, feature: EchoFeature, variance: floa
 def extend_over_window(landmark: Landmark, window: EchoWindow, variance: float) -> Landmark:
     """Return the segment with open ends moved to the feet of those echoes of a window that agree with its line.
 
-    Outwards from the middle echo, as far as they agree; this tells where the side was still heard, not where it ends.
+    Outwards from the middle echo, as far as they agree; this is where the side was still detected, not where it ends.
     """
     if landmark.type != LandmarkType.SEGMENT:
         return landmark
@@ -129,7 +129,7 @@ def extend_over_window(landmark: Landmark, window: EchoWindow, variance: float) 
 
 
 def update_end(landmark: Landmark, along: float, variance: float) -> Landmark:
-    """Return the segment whose nearer end was heard ``along`` [m] its line with a ``variance`` [m2]."""
+    """Return the segment whose nearer end was detected ``along`` [m] its line with a ``variance`` [m2]."""
     if along - landmark.start < landmark.end - along:
         p = landmark.start_variance
         gain = p / (p + variance)

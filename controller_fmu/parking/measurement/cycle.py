@@ -7,8 +7,6 @@ from controller_fmu.parking.measurement.sensor import SENSORS
 
 MAX_TRANSPORT_DELAY = 0.01
 """Readings arrive at most this long [s] after their cycle ended: one communication step of the co-simulation."""
-
-
 NANOSECOND = 1e-9
 """[s]"""
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus
 
 MISSED_ECHOES = 6
+"""In a row, by a working sensor once in 6e7 times (5 % dropouts)."""
 
 
 class MissedEchoes(NamedTuple):

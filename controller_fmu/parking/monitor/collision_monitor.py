@@ -34,6 +34,7 @@ POSES = 8
 LOOK_AHEAD = 0.4
 """The outline is swept this far [m] beyond the stopping distance, so that the speed falls smoothly."""
 UNLIMITED = 100.0
+"""Speed [m/s] or distance [m] that is not limited."""
 APPROACH = 0.005
 """Only what comes nearer by more than this [m] counts: the vehicle may leave what it stands beside."""
 RESTART = 0.1
@@ -55,7 +56,7 @@ class EchoObstacle(NamedTuple):
     """Unit vector from the sensor to it."""
     uy: float = 0.0
     half_length: float = 0.0
-    """A side goes on across that direction for so far [m]: half way to the next sensor, which hears it beyond."""
+    """A side goes on across that direction for so far [m]: half way to the next sensor, which detects it beyond."""
 
 
 class VehicleMotion(NamedTuple):
@@ -140,9 +141,9 @@ def free_by_map(
             b = end_point(landmark)
             least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
-                way = horizon * step / POSES
+                travelled = horizon * step / POSES
                 distance = line_distance(a, b, sweep.poses[step - 1], outline)
-                if way < free and distance < params.map_distance and distance < least:
+                if travelled < free and distance < params.map_distance and distance < least:
                     free = horizon * (step - 1) / POSES
     return free
 
@@ -165,11 +166,13 @@ def free_by_echoes(
             b = Point(echo.x + echo.half_length * echo.uy, echo.y - echo.half_length * echo.ux)
             least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
-                way = horizon * step / POSES
-                time = motion.delay + min(MAX_RATE_TIME, 2.0 * way / max(motion.speed, APPROACH))
-                kept = params.echo_distance + echo.closing_speed * time if echo.is_unexplained else params.map_distance
+                travelled = horizon * step / POSES
+                time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, APPROACH))
+                required = params.map_distance
+                if echo.is_unexplained:
+                    required = params.echo_distance + echo.closing_speed * time
                 distance = line_distance(a, b, sweep.poses[step - 1], outline)
-                if way < free and distance < kept and (distance < least or echo.closing_speed > 0.0):
+                if travelled < free and distance < required and (distance < least or echo.closing_speed > 0.0):
                     free = horizon * (step - 1) / POSES
     return free
 

@@ -11,7 +11,7 @@ from modelkit.vocabulary import Pose
 
 
 class ExpectedMotion(NamedTuple):
-    """What the system asked of the vehicle over the last sample."""
+    """What the system requested of the vehicle over the last sample."""
 
     steers: bool
     """It holds the steering wheel."""

@@ -15,6 +15,7 @@ INITIAL_RATE_VARIANCE = 4.0
 GATE = 16.0
 """Innovation gate, chi-square of one degree of freedom: 4 sigma."""
 CONFIRMATIONS = 2
+"""Echoes after which a track is confirmed: one alone may be noise."""
 MAX_COASTING = 4
 """Measurement cycles: 0.16 s."""
 

@@ -17,7 +17,7 @@ from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 MAX_LENGTH = 10.0
-"""The car is looked at no farther [m] from a node."""
+"""The free distance at a node is known up to this [m]."""
 MAX_TRIES = 8
 
 

@@ -27,11 +27,11 @@ from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 EXAMINED_DISTANCE = 1.25
-"""Distance [m] before and behind where a segment begins along which the car is looked at."""
+"""Distance [m] before and behind where a segment begins along which clearances are examined."""
 EXAMINED_STEP = 0.125
-"""Distance [m] from one look to the next."""
+"""Distance [m] between two examined poses."""
 MAX_OVERRUN = 0.2
-"""Looked for no farther [m] beyond a change of gear."""
+"""Examined no farther [m] beyond a change of gear."""
 MARGIN_FRACTION = 0.2
 """Fraction of the margin that steering while rolling may take, at most ``MAX_MARGIN_OFFSET`` [m]."""
 MAX_MARGIN_OFFSET = 0.02
@@ -49,7 +49,7 @@ TRACKING_RATE = 1.3
 SAME_CURVATURE = 1e-6
 """Curvatures nearer than this [1/m] are one."""
 EXAMINED_AFTER = 2.0
-"""Distance [m] behind a transition over which the car is looked at."""
+"""Distance [m] behind a transition over which clearances are examined."""
 
 
 def measure_clearance(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> bool:

@@ -136,7 +136,7 @@ def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: Planning
 
 
 def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> None:
-    """Forget all, and remember what is asked."""
+    """Forget all, and store the request."""
     numbers = _numbers(request)
     for which in range(REQUESTED):
         set_requested(work, which, numbers[which])

@@ -1,4 +1,4 @@
-"""What is asked of the planner, and what one search is given: poses, a car, a margin, the numbers that steer it."""
+"""The request to the planner, and the problem of one search: poses, a car, a margin, prices and resolution."""
 
 from typing import NamedTuple
 
@@ -12,13 +12,13 @@ STEERING_COST = 0.5
 
 
 class PlanningRequest(NamedTuple):
-    """What is asked for: a path from one pose to another."""
+    """Request for a path from one pose to another."""
 
     start: Pose = Pose()
     goal: Pose = Pose()
     car: VehicleOutline = VehicleOutline()
     margin: float = 0.0
-    """Clearance [m] wished for; where it cannot be kept, less is tried."""
+    """Desired clearance [m]; where it cannot be kept, less is tried."""
     max_cusps: int = 0
     """Changes of direction of a path that is taken."""
 
@@ -39,7 +39,7 @@ class SearchRegion(NamedTuple):
 
 
 class SearchResolution(NamedTuple):
-    """How finely a search tells poses apart, and how greedily it goes for the target."""
+    """How finely a search distinguishes poses, and how greedily it heads for the target."""
 
     cell: float
     """Side [m] of the cells in which one pose stands for all."""
@@ -58,7 +58,7 @@ class SearchStage(NamedTuple):
 
     resolution: SearchResolution
     margin_fraction: float
-    """Of the margin wished for."""
+    """Of the desired margin."""
     max_expansions: int
     """Expansions after which the search gives up."""
     always: bool = False

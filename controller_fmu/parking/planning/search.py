@@ -47,19 +47,21 @@ EVALUATED = 1
 CLOSED = 2
 
 FIRST_SUCCESSOR = 0.35
+"""Length [m] of the shortest successor of a node."""
 SUCCESSOR_RATIO = 2.3
+"""Length of each longer successor over that of the one before."""
 BUCKETS_PER_METRE = 4.0
 """Buckets of the queue for each metre of cost."""
 MIN_LENGTH = 0.02
 MAX_SUCCESSORS = 70
 MAX_EVALUATIONS_PER_STEP = 32
-"""Nodes looked at in one step at the most."""
+"""Nodes evaluated in one step at most."""
 EVALUATIONS_PER_EXPANSION = 20
-"""A search also gives up after so many times as many nodes looked at as it may expand."""
+"""A search also gives up after this many evaluations for each node that it may expand."""
 REFINED_RADIUS = 2.5
 """Within this distance [m] of the root the cells are finer."""
 CROWDING_CELL = 1.5
-"""Side [m] of a region, in which nodes make each other less wanted."""
+"""Side [m] of a region, in which each further node costs more (``crowding_cost``)."""
 
 
 def begin_search(work: PlanningWork, problem: SearchProblem) -> None:

@@ -44,7 +44,7 @@ SEARCH_SCHEDULE = (
     SearchStage(EXHAUSTIVE, 0.2, 5000),
     SearchStage(FINER, 0.2, 2000, always=True, root_at_tighter_end=False),
 )
-"""Coarse searches first; where the wished margin cannot be kept, a half, a third and a fifth of it."""
+"""Coarse searches first; where the desired margin cannot be kept, a half, a third and a fifth of it."""
 CLEARANCE_RESERVE = 0.001
 """The margin is so much [m] less than the clearance at start and goal."""
 MIN_MARGIN = 0.002
@@ -54,6 +54,7 @@ REGION_MARGIN = 15.0
 """The window reaches so far [m] beyond start and goal."""
 EDGE_CELL = 2.0
 COST_TO_GO_CELL = 0.4
+"""Least side [m] of a cell of the two grids; a region that is too large for their capacity has larger cells."""
 
 
 def search_region(request: PlanningRequest) -> SearchRegion:
@@ -76,9 +77,9 @@ def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProble
     stage = SEARCH_SCHEDULE[work.counts[STAGE]]
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     goal = Pose(0.0, 0.0, request.goal.heading)
-    wished = request.margin * stage.margin_fraction
+    desired = request.margin * stage.margin_fraction
     clearance = work.values[MIN_END_CLEARANCE] - CLEARANCE_RESERVE
-    margin = wished if wished < clearance else clearance
+    margin = desired if desired < clearance else clearance
     margin = margin if margin > MIN_MARGIN else MIN_MARGIN
     from_goal = stage.root_at_tighter_end == (work.counts[GOAL_TIGHTER] == 1)
     root = goal if from_goal else start

@@ -32,7 +32,7 @@ CAR_WIDTH_SIGMA = 0.2
 MERGED_LENGTH = 1.0
 """So much [m] of a side that is still being passed may be the next car's: the gap shows when as much is seen of it."""
 MAX_CAR = 6.0
-"""A longer side [m] is a wall, and tells nothing of how cars stand."""
+"""A longer side [m] is a wall, and shows nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 MAX_BAY = 3.5

@@ -10,8 +10,10 @@ from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
 from modelkit.maths import wrap_angle
 
-MIN_CORRECTION = 0.6
-"""A flank corrects a neighbour's corner by up to this [m]: an end known to 0.2 m, three sigma; else by three of its."""
+MIN_CORRECTION_GATE = 0.6
+CORRECTION_GATE_SIGMA = 3.0
+"""A flank corrects a neighbour's corner by at most three standard deviations of that corner, or 0.6 m (three times
+0.2 m) where it is known better."""
 MIN_FLANK = 0.5
 """A shorter side [m] in the slot is no flank."""
 MIN_FACE = 0.2
@@ -37,16 +39,16 @@ def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], pa
             point = point_to_frame(middle.x, middle.y, candidate.row.frame)
             deep = candidate.row.side * point.y - candidate.front
             if 0.0 < deep < CAR_WIDTH:
-                if abs(point.x - candidate.behind.end) < max_correction(candidate.behind.end_sigma):
+                if abs(point.x - candidate.behind.end) < correction_gate(candidate.behind.end_sigma):
                     behind = point.x
-                if abs(point.x - candidate.ahead.start) < max_correction(candidate.ahead.start_sigma):
+                if abs(point.x - candidate.ahead.start) < correction_gate(candidate.ahead.start_sigma):
                     ahead = point.x
     return candidate._replace(behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead))
 
 
-def max_correction(sigma: float) -> float:
-    """Return by how much [m] a flank corrects a corner of standard deviation ``sigma`` [m]."""
-    return max(MIN_CORRECTION, 3.0 * sigma)
+def correction_gate(sigma: float) -> float:
+    """Return by how much [m] a flank may correct a corner of standard deviation ``sigma`` [m]."""
+    return max(MIN_CORRECTION_GATE, CORRECTION_GATE_SIGMA * sigma)
 
 
 def correct_slot(
@@ -67,9 +69,9 @@ def correct_slot(
                 middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
                 point = point_to_frame(middle.x, middle.y, candidate.row.frame)
                 is_deep = candidate.row.side * point.y > candidate.front
-                if is_deep and abs(point.x - candidate.behind.end) < max_correction(candidate.behind.end_sigma):
+                if is_deep and abs(point.x - candidate.behind.end) < correction_gate(candidate.behind.end_sigma):
                     behind = point.x
-                if is_deep and abs(point.x - candidate.ahead.start) < max_correction(candidate.ahead.start_sigma):
+                if is_deep and abs(point.x - candidate.ahead.start) < correction_gate(candidate.ahead.start_sigma):
                     ahead = point.x
         corrected = candidate._replace(
             behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead)

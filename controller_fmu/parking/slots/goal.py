@@ -58,9 +58,9 @@ def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -
 def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
-    n empty bays leave n times their width and once what cars leave of a bay.
+    A gap of n bays is n times the width of a bay, and once more the spare width beside a car in its bay.
     """
     width = candidate.ahead.start - candidate.behind.end
-    left = max(candidate.bay - CAR_WIDTH, 0.0)
-    bays = max(1.0, float(math.floor((width - left) / candidate.bay + 0.5))) if candidate.bay > 0.0 else 1.0
-    return candidate.ahead.start - 0.5 * left - 0.5 * (width - left) / bays
+    spare = max(candidate.bay - CAR_WIDTH, 0.0)
+    bays = max(1.0, float(math.floor((width - spare) / candidate.bay + 0.5))) if candidate.bay > 0.0 else 1.0
+    return candidate.ahead.start - 0.5 * spare - 0.5 * (width - spare) / bays

@@ -36,6 +36,7 @@ ASKEW_VARIANCE = 0.0012
 UNEVEN = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9
+"""Position [m] along the row where there is no side."""
 
 
 class RowMember(NamedTuple):

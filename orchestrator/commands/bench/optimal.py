@@ -64,8 +64,8 @@ def _text(optimum: Optimum) -> str:
     if not optimum.is_valid:
         return f"{driven}; no valid optimum: {optimum.reason}"
     return (
-        f"{driven}; optimum {optimum.duration:.1f} s, {optimum.length:.1f} m: time {optimum.time_ratio:.2f}, "
-        f"length {optimum.length_ratio:.2f} of it"
+        f"{driven}; optimum {optimum.duration:.1f} s, {optimum.length:.1f} m; driven over optimal: "
+        f"time {optimum.time_ratio:.2f}, length {optimum.length_ratio:.2f}"
     )
 
 

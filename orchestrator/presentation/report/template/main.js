@@ -111,7 +111,9 @@ function headline(page) {
   $("subtitle").textContent = page.subtitle;
   $("verdict").textContent = page.verdict.text;
   $("verdict").classList.add(page.verdict.kind);
-  for (const [key, value] of page.facts) $("facts").append(element("div", {}, element("dt", {}, key), element("dd", {}, value)));
+  for (const [key, value] of page.facts) {
+    $("facts").append(element("div", { class: value.length > 24 ? "wide" : null }, element("dt", {}, key), element("dd", {}, value)));
+  }
   $("foot").textContent = page.foot;
   $("plots-said").textContent = page.runs.length > 1 ? "one colour per run" : "solid: measured; dashed: commanded";
   if (page.live) { $("drive").href = page.live; $("drive").hidden = false; }

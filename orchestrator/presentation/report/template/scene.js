@@ -5,7 +5,7 @@ class Scene {
     this.page = page;
     this.canvas = canvas;
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    this.layers = { planned: true, driven: true, trail: true, sensors: true };
+    this.layers = { planned: true, driven: true, trail: true, sensors: true, optimum: true };
     this.turn = -(page.runs[0].scene.turn || 0);
     /** @type {number[]} what stands in the middle of the canvas */
     this.middle = [0, 0];

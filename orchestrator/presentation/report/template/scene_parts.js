@@ -136,7 +136,7 @@ function drawKeyPoints(scene, run, t) {
 function drawPaths(scene, run, number, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
   g.lineJoin = g.lineCap = "round";
-  if (scene.layers.planned && run.scene.optimum) drawOptimum(scene, run.scene.optimum);
+  if (scene.layers.optimum && run.scene.optimum) drawOptimum(scene, run.scene.optimum);
   if (scene.layers.planned && number === 0) { drawPlan(scene, run, run.plan(t)); drawKeyPoints(scene, run, t); }
   if (scene.layers.trail) drawTrail(scene, run, number, t);
   if (!scene.layers.driven) return;

@@ -34,9 +34,10 @@ function themes(player) {
 function layers(player) {
   for (const name of Object.keys(player.scene.layers)) {
     if (name === "sensors" && !player.page.runs.some((run) => run.scene.sensors.length)) continue;
+    if (name === "optimum" && !player.page.runs.some((run) => run.scene.optimum)) continue;
     const box = element("input", { type: "checkbox", checked: true });
     box.addEventListener("change", () => { player.scene.layers[name] = box.checked; player.show(); });
-    $("layers").append(element("label", {}, box, name));
+    $("layers").append(element("label", {}, box, name === "optimum" ? "optimum (dotted)" : name));
   }
   player.scene.onFree = () => $("follow").setAttribute("aria-pressed", "false");
   const follow = () => {

@@ -17,6 +17,7 @@ from modelkit.store import Column
 
 LARGE_MAP_CORNERS = 2048
 LARGE_CORNERS = LARGE_MAP_CORNERS + CORNERS - MAP_CORNERS
+"""Those of the map, and as many as the valet has for obstacles that are in no map."""
 NEAR_ITEMS_PER_EDGE = 64
 """Entries in the lists of edges by cell: an edge of 0.4 m is listed in some 20 cells of 2 m."""
 LARGE_NEAR_ITEMS = NEAR_ITEMS_PER_EDGE * LARGE_CORNERS

@@ -11,6 +11,7 @@ import yaml
 from shapely.geometry import LineString, Polygon
 
 from orchestrator.cli import main
+from orchestrator.evaluation.verdict.geometry import edges
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene
 from orchestrator.studies.benchmark.optimal import reference
@@ -70,6 +71,11 @@ def test_distances_are_those_of_shapely_and_their_derivatives_those_of_differenc
         step = 1e-6 * np.eye(3)[axis]
         ends = [measure_gaps(poses + sign * step, edges, LIMITS).distance for sign in (1.0, -1.0)]
         assert (ends[0] - ends[1]) / 2e-6 == pytest.approx(found.gradient[..., axis], abs=1e-6)
+
+
+def test_a_wall_is_one_side_and_a_polygon_is_closed() -> None:
+    assert [side[:4] for side in edges([[(0.0, 1.0), (2.0, 1.0)]])] == [(0.0, 1.0, 2.0, 1.0)]
+    assert [side[:2] for side in edges([[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]])] == [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
 
 
 def test_derivatives_by_the_duration_of_a_move_leave_the_others_alone() -> None:

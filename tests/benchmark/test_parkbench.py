@@ -96,6 +96,7 @@ def _without(*path: str) -> Any:
 
 
 REQUEST = ("Frames", "0", "PlanningRequest")
+AREA = {"m_targetPosture": {"m_pose": list(TARGET)}}
 
 
 @pytest.mark.parametrize(
@@ -113,6 +114,7 @@ REQUEST = ("Frames", "0", "PlanningRequest")
         (scene(objects=[polyline([(1.0, 2.0)])]), r"NfmAggregatedPolygonObjects\[1\]: expected two or more"),
         (scene(objects=[polyline([(1.0, "2"), (2.0, 2.0)])]), "'2': expected a finite number"),
         (scene(m_pmpParams={"m_vehicleContour": {}}), "m_vehContourFrontX: expected a list"),
+        (scene(m_targetArea=AREA | {"m_longitudinalTolerance": "0"}), "m_longitudinalTolerance: '0'"),
     ],
 )
 def test_what_is_no_scene_is_refused_with_its_place(content: Any, said: str, tmp_path: Path) -> None:

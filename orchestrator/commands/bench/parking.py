@@ -84,6 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print(rows: list[SceneRow], out: Path) -> None:
+    from rich.markup import escape
     from rich.table import Table
 
     head, *lines = table_lines(rows)
@@ -91,7 +92,7 @@ def _print(rows: list[SceneRow], out: Path) -> None:
     for place, name in enumerate(head):
         table.add_column(name, justify="left" if place == 0 else "right")
     for line in lines:
-        table.add_row(*line)
+        table.add_row(*map(escape, line))
     console().print(table)
     for figures in figures_of(rows):
         console().print(figures.line(), markup=False, soft_wrap=True)

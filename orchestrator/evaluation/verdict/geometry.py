@@ -154,8 +154,9 @@ def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:
 
 
 def edges(polygons: Sequence[Sequence[tuple[float, float]]]) -> list[Kerb]:
-    """Return the sides of polygons as kerbs, for pictures that know no polygons."""
-    return [Kerb(*a, *b, 1.0) for corners in polygons for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    """Return the sides of polygons as kerbs, where no polygons are known; a wall, of two corners, has one."""
+    closed = [corners if len(corners) == 2 else [*corners, corners[0]] for corners in polygons]
+    return [Kerb(*a, *b, 1.0) for corners in closed for a, b in pairwise(corners)]
 
 
 def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, float]) -> list[list[float]]:

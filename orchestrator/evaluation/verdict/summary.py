@@ -15,7 +15,7 @@ from orchestrator.evaluation.verdict.frame import in_frame, pose_of
 from orchestrator.evaluation.verdict.geometry import vehicle_parameters
 from orchestrator.evaluation.verdict.judge import Check, judge
 from orchestrator.evaluation.verdict.measures import Measure, measure_recording
-from orchestrator.evaluation.verdict.numbers import facts_of
+from orchestrator.evaluation.verdict.numbers import RunFacts, facts_of
 from orchestrator.evaluation.verdict.outcome import Ends, RequiredCheck, outcomes, state_name
 from orchestrator.evaluation.verdict.standing import beyond_ends
 from orchestrator.evaluation.verdict.truth import truth_of
@@ -202,12 +202,15 @@ class Summary(_Part):
         return data
 
 
-def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: str = "") -> Summary:
+def summarize(
+    recording: Recording, scenario: Scenario, wall_time: float, note: str = "", facts: RunFacts | None = None
+) -> Summary:
     """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist.
 
     ``note``: what its log does not tell, see :func:`orchestrator.evaluation.verdict.logged.read_logged_run`.
+    ``facts``: those of :func:`orchestrator.evaluation.verdict.numbers.facts_of`, if they are known already.
     """
-    facts = facts_of(recording, scenario)
+    facts = facts_of(recording, scenario) if facts is None else facts
     numbers, checks = facts.numbers, judge(scenario.requirements, recording, facts, scenario.file)
     outcome, reason = _outcome(recording, scenario, checks)
     events = _events(recording)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from modelkit.variables import variables
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -13,7 +14,7 @@ Points = list[tuple[float, float]]
 
 def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     """Return the parameters ``map`` of a controller that has one. Raises ``BadInput`` if it holds fewer corners."""
-    room = sum(item.name.startswith("map[") for item in variables(scenario.models["controller"].params)) // 3
+    room = map_capacity(scenario.models["controller"].params)
     if not room:
         return {}
     polygons = enumerate(obstacles_of_map(scenario), start=1)
@@ -24,6 +25,11 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     for place, (x, y, number) in enumerate(corners, start=1):
         parameters |= {f"map[{place}].x": x, f"map[{place}].y": y, f"map[{place}].polygon": number}
     return parameters
+
+
+def map_capacity(params: type[Any]) -> int:
+    """Return how many corners the map among the parameters of a controller holds, 0 without a map."""
+    return sum(item.name.startswith("map[") for item in variables(params)) // 3
 
 
 def obstacles_of_map(scenario: Scenario) -> list[Points]:

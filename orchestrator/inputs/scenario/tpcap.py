@@ -11,8 +11,9 @@ from typing import Any
 from orchestrator.inputs.text.errors import BadInput
 
 STOP_TIME = 400.0
+"""[s]"""
 PLAN_MARGIN = 0.1
-MAX_MANOEUVRES = 30
+"""Desired clearance [m]."""
 
 
 def read_tpcap(path: Path) -> dict[str, Any]:

@@ -1,13 +1,13 @@
 """A scene driven by the FMUs: on the kinematic body without errors, and on the double-track body with all of them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.evaluation.verdict.contact import contact_facts
+from orchestrator.evaluation.verdict.numbers import facts_of
 from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -15,10 +15,10 @@ from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.recording import Recording
 
-KINEMATIC = "kinematic"
+KINEMATIC, DOUBLE_TRACK = "kinematic", "double_track"
 BODIES = {
     KINEMATIC: ("vehicle.body=kinematic",),
-    "double_track": (
+    DOUBLE_TRACK: (
         "vehicle.body=double_track",
         "vehicle.steering.dead_time=40 ms",
         "vehicle.steering.lag=50 ms",
@@ -35,6 +35,7 @@ class DrivenScene(NamedTuple):
     """How a drive ended. Clearance: of the outline to everything, NaN if not known."""
 
     parked: bool
+    """Without contact."""
     reason: str
     contact: bool
     clearance: float
@@ -42,7 +43,7 @@ class DrivenScene(NamedTuple):
     length: float
     """Distance travelled [m]."""
     manoeuvres: int
-    """Moves between changes of direction."""
+    """Moves between changes of direction, also those before the first reverse one."""
     duration: float
     """[s]"""
 
@@ -56,13 +57,21 @@ class SceneRun(NamedTuple):
 
 
 def drive_scene(
-    name: str, body: str, files: Mapping[str, Path] | None, kind: str, interrupt: Interrupt | None = None
+    name: str,
+    body: str,
+    files: Mapping[str, Path] | None,
+    kind: str,
+    interrupt: Interrupt | None = None,
+    overrides: Sequence[str] = (),
 ) -> tuple[DrivenScene, SceneRun]:
-    """Return how the scene ``name`` (a file) was driven on ``body``, and the run itself."""
-    scenario = load_scenario(name, BODIES[body])
+    """Return how the scene ``name`` (a file) was driven on ``body`` with further ``overrides``, and the run itself."""
+    scenario = load_scenario(name, [*BODIES[body], *overrides])
     ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
-    summary = summarize(ran.recording, scenario, ran.wall_time)
-    clearance = contact_facts(ran.recording, scenario).nearest
+    facts = facts_of(ran.recording, scenario)
+    summary = summarize(ran.recording, scenario, ran.wall_time, facts=facts)
+    clearance = facts.numbers["min_clearance"]
+    if scenario.obstacles:
+        clearance = float(np.minimum(clearance, facts.numbers["polygon_clearance"]))
     signals = ran.recording.signals
     speed = signals["controller.speed_request"]
     signs = np.sign(speed[speed != 0.0])

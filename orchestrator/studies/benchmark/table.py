@@ -7,10 +7,10 @@ import statistics
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from orchestrator.studies.benchmark.driving import KINEMATIC, DrivenScene
-from orchestrator.studies.benchmark.scenes import SceneRow, row_as_json
+from orchestrator.studies.benchmark.driving import DOUBLE_TRACK, KINEMATIC, DrivenScene
+from orchestrator.studies.benchmark.scenes import OptimumFigures, SceneRow, plain_figures, row_as_json
 
-SHORT = {"kinematic": "kinematic", "double_track": "double track"}
+BODY_TEXTS = {KINEMATIC: "kinematic", DOUBLE_TRACK: "double track"}
 
 
 class GroupFigures(NamedTuple):
@@ -36,7 +36,8 @@ class GroupFigures(NamedTuple):
     def line(self) -> str:
         """Return the figures as one sentence."""
         driven = ", ".join(
-            f"{count} parked ({SHORT[body]}), {self.contacts[body]} with contact" for body, count in self.parked.items()
+            f"{count} parked ({BODY_TEXTS[body]}), {self.contacts[body]} with contact"
+            for body, count in self.parked.items()
         )
         return (
             f"{self.group}: {self.planned} of {self.scenes} planned, {driven}; "
@@ -69,7 +70,7 @@ def _figures(group: str, rows: Sequence[SceneRow]) -> GroupFigures:
         group,
         len(rows),
         sum(row.plan.found for row in rows),
-        {body: sum(drive.parked and not drive.contact for drive in driven[body]) for body in bodies},
+        {body: sum(drive.parked for drive in driven[body]) for body in bodies},
         {body: sum(drive.contact for drive in driven[body]) for body in bodies},
         statistics.median(times),
         max(times),
@@ -83,7 +84,7 @@ def _figures(group: str, rows: Sequence[SceneRow]) -> GroupFigures:
 def table_lines(rows: Sequence[SceneRow]) -> list[list[str]]:
     """Return head and rows of the table for people: of the last body all figures, of others whether it parked."""
     bodies = list(dict.fromkeys(body for row in rows for body in row.drives))
-    head = ["scene", "planned", "slowest sample", "margin", *(SHORT[body] for body in bodies)]
+    head = ["scene", "planned", "slowest sample", "margin", *(BODY_TEXTS[body] for body in bodies)]
     head += ["clearance", "length", "moves", "time"]
     if all(row.optimum is None for row in rows):
         return [head, *(_line(row, bodies) for row in rows)]
@@ -104,7 +105,7 @@ def _line(row: SceneRow, bodies: Sequence[str]) -> list[str]:
     line += [f"{max(plan.sample_times, default=0.0) * 1e3:.2f} ms", f"{plan.margin * 100:.0f} cm" if plan.found else ""]
     line += [_result(row.drives.get(body)) for body in bodies]
     drive = row.drives.get(bodies[-1]) if bodies else None
-    return [*line, *([""] * 4 if drive is None else _figures_of(drive))]
+    return [*line, *([""] * 4 if drive is None else _drive_cells(drive))]
 
 
 def _result(drive: DrivenScene | None) -> str:
@@ -113,7 +114,7 @@ def _result(drive: DrivenScene | None) -> str:
     return "contact" if drive.contact else "parked" if drive.parked else drive.reason
 
 
-def _figures_of(drive: DrivenScene) -> list[str]:
+def _drive_cells(drive: DrivenScene) -> list[str]:
     clearance, length = f"{drive.clearance * 100:.1f} cm", f"{drive.length:.1f} m"
     return [clearance, length, str(drive.manoeuvres), f"{drive.duration:.0f} s"]
 
@@ -132,21 +133,26 @@ def csv_text(rows: Sequence[SceneRow]) -> str:
         first = [row.scene.group, row.scene.name, row.scene.corners]
         first += [plan.found, plan.reason, plan.steps, plan.margin, *times]
         for body, drive in row.drives.items() or [("", None)]:
-            cells = [""] * len(drive_head) if drive is None else [*drive[:1], *drive[2:], drive.reason]
+            cells = [""] * len(drive_head) if drive is None else _drive_figures(drive)
             best = row.optimum if body == KINEMATIC else None
-            figures = [""] * len(optimum_head) if best is None else [*best[1:], best.reason]
+            figures = [""] * len(optimum_head) if best is None else _optimum_figures(best)
             writer.writerow([*first, body, *cells, *figures])
     return out.getvalue()
+
+
+def _drive_figures(drive: DrivenScene) -> list[Any]:
+    figures = [drive.parked, drive.contact, drive.clearance, drive.length, drive.manoeuvres, drive.duration]
+    return [*figures, drive.reason]
+
+
+def _optimum_figures(best: OptimumFigures) -> list[Any]:
+    return [best.duration, best.length, best.time_ratio, best.length_ratio, best.reason]
 
 
 def as_json(rows: Sequence[SceneRow], command: str) -> dict[str, Any]:
     """Return all rows and figures as plain data."""
     return {
         "command": command,
-        "groups": [_as_data(item) for item in figures_of(rows)],
+        "groups": [plain_figures(item) for item in figures_of(rows)],
         "scenes": [row_as_json(row) for row in rows],
     }
-
-
-def _as_data(figures: GroupFigures) -> dict[str, Any]:
-    return {name: None if value != value else value for name, value in figures._asdict().items()}

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.evaluation.verdict.geometry import CarOutline
+from orchestrator.evaluation.verdict.geometry import CarOutline, edges
 from orchestrator.evaluation.verdict.polygons import polygon_clearances
 from orchestrator.inputs.scenario.obstacle_map import obstacles_of_map
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -25,12 +25,13 @@ WANTED_INTERVAL = 0.4
 MIN_INTERVALS, MAX_INTERVALS = 6, 160
 """Of a move; of all moves, roughly."""
 MOVING_SPEED = 1e-3
+"""[m/s]"""
 CHECK_SUBSTEPS = 10
 """Poses checked in each interval."""
 CLEARANCE_TOLERANCE = 0.02
+"""[m]"""
 GOAL_TOLERANCE, GOAL_HEADING_TOLERANCE = 0.01, math.radians(0.2)
-DEFAULT_ACCELERATION = 1.5
-"""Largest acceleration [m/s2] of the vehicle by default."""
+"""[m], [rad]"""
 
 
 class Optimum(NamedTuple):
@@ -71,41 +72,40 @@ def find_optimum(scenario: Scenario, recording: Recording) -> Optimum:
     if scenario.target is None or "controller.valet.margin" not in recording.signals:
         raise BadInput("expected a drive of the valet to a target", file=scenario.file)
     obstacles = obstacles_of_map(scenario)
-    limits = limits_of(scenario, float(recording.signals["controller.valet.margin"].max()))
-    driven = motion_of_drive(scenario, recording, limits)
-    edges = np.array([edge for polygon in obstacles for edge in _edges(polygon)], dtype=float).reshape(-1, 2, 2)
-    motion = optimize(driven, edges, limits)
+    limits = limits_of(recording)
+    driven = motion_of_drive(scenario, recording)
+    sides = np.array([side[:4] for side in edges(obstacles)], dtype=float).reshape(-1, 2, 2)
+    motion = optimize(driven, sides, limits)
     path = drive_through(motion, limits.wheelbase, CHECK_SUBSTEPS)
-    front = limits.half_length + limits.ahead
-    car = CarOutline(front, 2.0 * limits.half_length - front, limits.half_width, limits.wheelbase)
+    car = CarOutline.of(recording.parameters_of("controller"))
     clearance = float(polygon_clearances(path[:, :3], obstacles, car).min()) if obstacles else math.inf
     duration, length = _time_and_length(recording)
     reason = _reason(motion, path, clearance, limits, duration)
     steps = np.diff(path[:, :2], axis=0)
-    own = motion.duration, float(np.hypot(steps[:, 0], steps[:, 1]).sum()), clearance
-    return Optimum(reason, *(own if not reason else (math.nan,) * 3), duration, length, path[:, :3])
+    figures = motion.duration, float(np.hypot(steps[:, 0], steps[:, 1]).sum()), clearance
+    return Optimum(reason, *(figures if not reason else (math.nan,) * 3), duration, length, path[:, :3])
 
 
-def limits_of(scenario: Scenario, clearance: float) -> MotionLimits:
-    """Return the limits that the controller and the vehicle of a scenario have."""
-    own = scenario.controller
-    ratio = own["car.steering.ratio"]
-    front, rear = own["car.wheelbase"] + own["car.front_overhang"], own["car.rear_overhang"]
+def limits_of(recording: Recording) -> MotionLimits:
+    """Return the limits that the controller and the vehicle of a drive had, and the margin of its plan."""
+    parameters = recording.parameters_of("controller")
+    ratio = parameters["car.steering.ratio"]
+    front, rear = parameters["car.wheelbase"] + parameters["car.front_overhang"], parameters["car.rear_overhang"]
     return MotionLimits(
-        speed=own.get("drive.speed", 0.8),
-        acceleration=scenario.vehicle.get("drive.acceleration_limit", DEFAULT_ACCELERATION),
-        deceleration=own.get("drive.deceleration", 0.5),
-        wheel_angle=own["car.steering.angle_limit"] / ratio,
-        wheel_rate=own["car.steering.rate_limit"] / ratio,
-        wheelbase=own["car.wheelbase"],
-        clearance=clearance,
+        speed=parameters["drive.speed"],
+        acceleration=recording.parameters_of("vehicle")["drive.acceleration_limit"],
+        deceleration=parameters["drive.deceleration"],
+        wheel_angle=parameters["car.steering.angle_limit"] / ratio,
+        wheel_rate=parameters["car.steering.rate_limit"] / ratio,
+        wheelbase=parameters["car.wheelbase"],
+        clearance=float(recording.signals["controller.valet.margin"].max()),
         half_length=0.5 * (front + rear),
-        half_width=0.5 * own["car.width"],
+        half_width=0.5 * parameters["car.width"],
         ahead=0.5 * (front - rear),
     )
 
 
-def motion_of_drive(scenario: Scenario, recording: Recording, limits: MotionLimits) -> TimedMotion:
+def motion_of_drive(scenario: Scenario, recording: Recording) -> TimedMotion:
     """Return a drive as a motion: one move for each gear, standstill before it included, and the goal at its end."""
     assert scenario.target is not None
     signals, t = recording.signals, recording.t
@@ -115,9 +115,7 @@ def motion_of_drive(scenario: Scenario, recording: Recording, limits: MotionLimi
         raise BadInput("the vehicle does not move in this drive", file=scenario.file)
     changes = moving[1:][np.diff(np.sign(speed[moving])) != 0.0]
     stops = [*(moving[np.searchsorted(moving, change) - 1] for change in changes), moving[-1]]
-    wheel = (
-        signals["vehicle.steering_wheel_angle"] * limits.wheel_angle / scenario.controller["car.steering.angle_limit"]
-    )
+    wheel = signals["vehicle.steering_wheel_angle"] / scenario.controller["car.steering.ratio"]
     turning = np.flatnonzero(np.abs(np.diff(wheel)) > 1e-9)
     begin = min([moving[0], *turning[:1]])
     ends = t[[begin, *stops[:-1], max([stops[-1], *(turning[-1:] + 1)])]]
@@ -157,9 +155,3 @@ def _reason(motion: TimedMotion, path: Array, clearance: float, limits: MotionLi
     if motion.duration > driven:
         return "slower than the drive: a poor local optimum"
     return ""
-
-
-def _edges(polygon: list[tuple[float, float]]) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """Return the edges of a polygon; a wall has one."""
-    pairs = list(zip(polygon, [*polygon[1:], polygon[0]], strict=True))
-    return pairs[:1] if len(polygon) == 2 else pairs

@@ -35,7 +35,7 @@ from orchestrator.evaluation.verdict.summary import Event, Final, FmuUsed, Summa
 from orchestrator.inputs.scenario.catalogue import collapse_arrays, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.inputs.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.inputs.scenario.fault import Fault  # noqa: E402
-from orchestrator.inputs.scenario.files import ROOM  # noqa: E402
+from orchestrator.inputs.scenario.files import LIBRARY  # noqa: E402
 from orchestrator.inputs.scenario.load_scenario import NOT_WRITTEN, load_scenario, scenario_names  # noqa: E402
 from orchestrator.inputs.scenario.models import APART, MODELS, apart_models  # noqa: E402
 from orchestrator.inputs.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
@@ -235,9 +235,9 @@ def scenarios_page() -> str:
     shipped = [load_scenario(name) for name in scenario_names()]
     rows = [[f"`{item.name}`", item.title, item.expected_outcome.replace("_", " "), item.source] for item in shipped]
     parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "title", "expected", "source"], rows)]
-    cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
+    cars = sorted(path.stem for path in (LIBRARY / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
-    for path in sorted((ROOM / "requirements").glob("*.yaml")):
+    for path in sorted((LIBRARY / "requirements").glob("*.yaml")):
         rows = [[item.id, f"`{item.signal}`", requirement_text(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
     for name, factors in {"apa-world": APA_WORLD, "parking-world": PARKING_WORLD}.items():

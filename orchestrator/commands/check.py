@@ -16,7 +16,7 @@ from orchestrator.testing.suite.junit import Suite, cases_of, write_junit
 
 EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630
-  apa check run.mcap requirements.yaml house --junit checks.xml
+  apa check run.mcap requirements.yaml project --junit checks.xml
 
 REQUIREMENTS.yaml is a list; each entry has an id, a signal of the run or a metric of the summary, one of
 max, min, max_abs and equals, a source, and optionally a window:

@@ -11,7 +11,7 @@ from rich.table import Table
 from orchestrator.commands import STUDIES
 from orchestrator.evaluation.verdict.limit_text import requirement_text
 from orchestrator.inputs.scenario.catalogue import Entry, entries, match_entries, range_text, start_text, systems
-from orchestrator.inputs.scenario.files import ROOM, car_names
+from orchestrator.inputs.scenario.files import LIBRARY, car_names
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.scenario.requirements import read_requirements
 from orchestrator.inputs.text.console import console
@@ -102,7 +102,7 @@ def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
     heads = {"set": "set", "id": "id", "signal": "signal", "required": "required", "source": "source"}
     rows = []
     for name in _requirement_sets():
-        for item in read_requirements(ROOM / "requirements" / f"{name}.yaml"):
+        for item in read_requirements(LIBRARY / "requirements" / f"{name}.yaml"):
             if _has(pattern, name, item.id, item.signal):
                 rows.append(
                     {
@@ -152,7 +152,7 @@ RUNS = "runs"
 
 
 def _requirement_sets() -> list[str]:
-    return sorted(path.stem for path in (ROOM / "requirements").glob("*.yaml"))
+    return sorted(path.stem for path in (LIBRARY / "requirements").glob("*.yaml"))
 
 
 def _has(pattern: str | None, *texts: str) -> bool:

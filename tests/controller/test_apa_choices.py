@@ -20,13 +20,13 @@ from tests.controller.test_apa_pull_out import CAR, outline
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 REASONS = {
     "apa-slot-too-shallow": "slot_too_shallow",
-    "apa-told-wrong": "slot_contradicted",
-    "apa-told-nose-in": "slot_not_supported",
+    "apa-external-slot-occupied": "slot_contradicted",
+    "apa-external-slot-nose-in": "slot_not_supported",
 }
 ENDS = {
-    "apa-told": 0.15,
-    "apa-told-wrong": 0.9,
-    "apa-told-nose-in": 1.0,
+    "apa-external-slot": 0.15,
+    "apa-external-slot-occupied": 0.9,
+    "apa-external-slot-nose-in": 1.0,
     "apa-choose": 0.14,
     "apa-slot-too-shallow": 0.9,
     "apa-pull-out": 0.1,
@@ -64,7 +64,7 @@ def test_it_ends_as_it_should(name: str, files: Any) -> None:
 def test_without_what_is_told_there_is_no_slot(files: Any, tmp_path: Path) -> None:
     untold = tmp_path / "untold.yaml"
     faults = "faults: [{signal: controller.external_slot.kind, kind: override, value: none}]"
-    untold.write_text(f"name: untold\nextends: apa-told\nstop_time: 25\n{faults}\n", encoding="utf-8")
+    untold.write_text(f"name: untold\nextends: apa-external-slot\nstop_time: 25\n{faults}\n", encoding="utf-8")
     _, recording, _ = driven(str(untold), files)
     assert not (seen(recording, "apa.mode") == Mode.PARKING_SPACE_APPEARS).any()
 

@@ -37,7 +37,7 @@ def run(more: dict[str, Any] | None = None, asked: dict[str, Any] | None = None,
 
 @pytest.mark.parametrize(("kind", "length"), [("parallel", 7.2), ("parallel", 5.7), ("perpendicular", 3.1)])
 @pytest.mark.parametrize("side", [1, -1])
-def test_the_car_is_parked_within_the_house_limits(kind: str, length: float, side: int) -> None:
+def test_the_car_is_parked_within_the_project_limits(kind: str, length: float, side: int) -> None:
     end = drive(*given(kind, length, side), 90.0)
     pose = end.vehicle.pose
     assert end.controller.apa.mode == Mode.PARKING_FINISH

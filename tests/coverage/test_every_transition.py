@@ -21,7 +21,7 @@ SHIPPED = (
     "apa-no-slot",
     "adaptive",
     "adaptive-ahead",
-    "valet-thing-in-the-way",
+    "valet-obstacle-on-path",
 )
 """Of the shipped scenarios those that the others add nothing to."""
 OWN = (*(HERE / "suite").glob("*.yaml"), HERE.parent / "steptest" / "test_guo2015_manoeuvre.yaml")

@@ -164,7 +164,7 @@ faults:
   - {signal: vehicle.odometry.x, kind: noise, sigma: 0.1}
   - {signal: vehicle.odometry.heading, kind: dropout, probability: 0.5}
 requirements:
-  - house
+  - project
   - {id: a, signal: vehicle.speed, max: 3, window: {from: 0, to: 1, phase: PARKED}, source: me}
 stop_condition: {still: 0.001, standstill: 0.5, succeeded: [PARKED]}
 """
@@ -181,7 +181,7 @@ runs:
 measures:
   offset: {largest: controller.lateral_error}
 within:
-  house: [house]
+  project: [project]
 map: {x: vehicle.start.x, y: vehicle.start.y}
 """.replace("guo2015-trial-odd", "guo2015-case4")
 RULES = """- {id: a, signal: vehicle.speed, max: 3 m/s, window: {from: 0, to: 2 s, at: end}, source: me}

@@ -168,7 +168,7 @@ def fuzz(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[st
         odd.write_bytes(content)
         words = draw.choice(
             (
-                ["check", str(odd), "house"],
+                ["check", str(odd), "project"],
                 ["report", str(odd), "--out", str(out / "page.html")],
                 ["compare", str(log), str(odd)],
                 ["export", "csv", str(odd), "--out", str(out / "table.csv")],

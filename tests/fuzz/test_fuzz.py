@@ -55,7 +55,7 @@ def test_what_a_log_told_once_and_broke_it_is_refused_in_a_line(line: str, log: 
     key, _, text = line.partition(" ")
     odd = tmp_path / "odd.mcap"
     odd.write_bytes(retold(log.read_bytes(), key, text))
-    for words in (["report", str(odd), "--out", str(tmp_path / "page.html")], ["check", str(odd), "house"]):
+    for words in (["report", str(odd), "--out", str(tmp_path / "page.html")], ["check", str(odd), "project"]):
         answer = ask(words, 5.0)
         assert not answer.mistake, answer.mistake
         assert answer.code == 2, answer

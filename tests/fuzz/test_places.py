@@ -20,7 +20,7 @@ COMMANDS = {
     "test --junit": ["test", *SHORT, "--out", "KEPT/test", "--junit", "FILE.xml"],
     "sweep": ["sweep", "guo2015-trial", "--stride", "250", "--out", "DIR"],
     "sweep --figure": ["sweep", "guo2015-trial", "--stride", "250", "--out", "KEPT/study", "--figure", "FILE.png"],
-    "check --junit": ["check", "LOG", "house", "--junit", "FILE.xml"],
+    "check --junit": ["check", "LOG", "project", "--junit", "FILE.xml"],
     "compare --html": ["compare", "LOG", "LOG", "--html", "FILE.html"],
     "report": ["report", "LOG", "--out", "FILE.html"],
     "export csv": ["export", "csv", "LOG", "--out", "FILE.csv"],

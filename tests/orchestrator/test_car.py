@@ -8,7 +8,7 @@ import pytest
 from modelkit.car import Car
 from modelkit.variables import variables
 from orchestrator.inputs.scenario.car import car_parameters
-from orchestrator.inputs.scenario.files import ROOM, car_names
+from orchestrator.inputs.scenario.files import LIBRARY, car_names
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
@@ -40,7 +40,7 @@ def test_both_models_are_told_the_same_car_and_the_file_says_all_of_its_geometry
 
 @pytest.mark.parametrize("car", car_names())
 def test_a_car_file_says_nothing_twice(car: str) -> None:
-    content = read_mapping(ROOM / "cars" / f"{car}.yaml")
+    content = read_mapping(LIBRARY / "cars" / f"{car}.yaml")
     assert set(content) <= {"title", "source", "car", "vehicle"}
     assert not {"steering", "wheelbase", "width", "ultrasonic"} & set(content.get("vehicle", {}))
 

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
@@ -15,7 +16,6 @@ from orchestrator.session.foreign import ImportedFmus
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.testing.catalogue.entries import (
-    ROOM,
     STEP_TESTS,
     Clause,
     is_catalogue,
@@ -49,7 +49,7 @@ def test_every_standard_asked_for_is_there() -> None:
 def test_every_step_test_and_every_scenario_made_for_it_is_used() -> None:
     scenarios, tests = runs_of(EVERYTHING)
     assert {path.stem for path in STEP_TESTS.glob("*.yaml")} == set(tests)
-    assert {path.stem for path in (ROOM.parent / "scenarios").glob("cicap-*.yaml")} <= set(scenarios)
+    assert {path.stem for path in (LIBRARY / "scenarios").glob("cicap-*.yaml")} <= set(scenarios)
 
 
 @pytest.mark.parametrize("item", EVERYTHING, ids=lambda item: f"{item.standard.key}-{item.entry.id}")
@@ -66,7 +66,7 @@ def test_limits_that_say_who_asks_say_it_of_the_standard_that_names_them() -> No
     for item in EVERYTHING:
         for limit in item.entry.limits_to_keep():
             source = limit.source.removesuffix(", unverified")
-            own = source == "house" or item.standard.standard.startswith(source)
+            own = source == "project" or item.standard.standard.startswith(source)
             assert own or item.standard.key.startswith("cicap"), (item.entry.id, limit.id, limit.source)
 
 
@@ -183,8 +183,8 @@ def test_the_command_says_it_as_text_json_junit_and_page(tmp_path: Path, capsys:
     assert main(["test", "catalogue/cicap-b2", "--json", "--out", str(out)]) == 0
     found = json.loads(capsys.readouterr().out)
     rows = {row["id"]: row for row in found["entries"]}
-    assert rows["somebody crosses"]["verdict"] == "met"
-    assert rows["somebody crosses"]["runs"][0]["name"] == "valet-pedestrian"
+    assert rows["pedestrian crosses"]["verdict"] == "met"
+    assert rows["pedestrian crosses"]["runs"][0]["name"] == "valet-pedestrian"
     assert rows["cruising"]["verdict"] == "not tested"
     assert sum(found["counts"].values()) == len(found["entries"])
 

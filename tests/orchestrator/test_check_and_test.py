@@ -62,7 +62,7 @@ def test_check_gives_the_verdicts_of_the_run_itself(log: Any, capsys: pytest.Cap
     assert checks == json.loads((log.parent / "summary.json").read_text())["checks"]
 
 
-@pytest.mark.parametrize("arguments", [["nothing.mcap", "house"], ["LOG", "nothing.yaml"], ["LOG", "hause"]])
+@pytest.mark.parametrize("arguments", [["nothing.mcap", "project"], ["LOG", "nothing.yaml"], ["LOG", "projekt"]])
 def test_check_refuses_bad_input(log: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", *(str(log) if item == "LOG" else item for item in arguments)]) == 2
     assert capsys.readouterr().err

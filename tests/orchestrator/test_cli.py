@@ -332,7 +332,7 @@ def test_the_folder_of_a_run_will_do_for_its_log(tmp_path: Path, capsys: pytest.
     assert not (folder / "report.html").exists()
     assert main(["report", str(folder)]) == 0
     assert (folder / "report.html").is_file()
-    assert main(["check", str(folder), "house"]) == 0
+    assert main(["check", str(folder), "project"]) == 0
     assert main(["compare", str(folder), str(folder)]) == 0
     assert main(["export", "csv", str(folder)]) == 0
     assert (folder / "run.csv").is_file()

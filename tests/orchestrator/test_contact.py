@@ -95,7 +95,7 @@ def test_a_requirement_of_the_same_name_or_metric_does_not_take_its_place() -> N
 
 def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys: Any) -> None:
     words = ["--fmus", "none", "--no-page", "--set", f"scene.boxes=[{BOX}]"]
-    words += ["--set", "requirements=[house]"]
+    words += ["--set", "requirements=[project]"]
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "a")]) == 1
     capsys.readouterr()
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "b"), "--set", "contact_allowed=true"]) == 0

@@ -9,11 +9,19 @@ from apa_cosim.testing import ClosedLoopRun, OpenLoopRun
 from modelkit.variables import variables
 from orchestrator.cli import main
 from orchestrator.evaluation.verdict.numbers import NUMBERS
+from orchestrator.inputs.scenario.files import find_file
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.renamed_names import METRICS, SCENARIO_KEYS, VARIABLES, current_name, new_name
+from orchestrator.inputs.text.renamed_names import (
+    METRICS,
+    SCENARIO_KEYS,
+    SHIPPED_NAMES,
+    VARIABLES,
+    current_name,
+    new_name,
+)
 from orchestrator.studies.sweep.study.study_file import load_study
 
 OLD = """\
@@ -36,7 +44,7 @@ NEW = """\
 extends: guo2015-case4
 decimation: {controller: 2}   # slower
 requirements:
-  - house
+  - project
   - {id: few, signal: manoeuvres, max: 8, source: mine, where: slot}
 stop_condition: {succeeded: [PARKED], ended: []}
 expected_outcome: parked
@@ -48,6 +56,7 @@ faults: [{signal: vehicle.manual.brake, kind: stuck_at_last, start: 100}]
 """
 STUDY = """\
 scenario: guo2015-case3-105
+within: {house: [house, gbt41630]}
 set: {every.controller: 2, vehicle.driver.wobble_period: 2}
 runs:
   grid: {"vehicle.road.slope, vehicle.road.bank": [0, 0.01]}
@@ -80,10 +89,21 @@ def test_a_study_and_an_open_loop_test_are_rewritten(tmp_path: Path) -> None:
     study = yaml.safe_load(migrated(tmp_path, STUDY))
     assert set(study["set"]) == {"decimation.controller", "vehicle.driver.speed_oscillation_period"}
     assert set(study["runs"]["grid"]) == {"vehicle.road.grade, vehicle.road.cross_slope"}
+    assert study["within"] == {"house": ["project", "gbt41630"]}
     assert study["measures"] == {"most": {"last": "controller.manoeuvres"}}
     assert load_study(str(tmp_path / "old.yaml")).name == "old"
     test = yaml.safe_load(migrated(tmp_path, TEST))
     assert (test["inputs"], test["expect"][0]["signal"]) == ({"manual.active": True}, "manual.brake")
+
+
+@pytest.mark.parametrize("folder", SHIPPED_NAMES)
+def test_shipped_files_of_an_earlier_name_are_rejected_with_the_new_one(folder: str, tmp_path: Path) -> None:
+    for old, new in SHIPPED_NAMES[folder].items():
+        with pytest.raises(BadInput, match=f"{old}: no .* of this name; it is called {new} now .apa migrate rewrites"):
+            find_file(old, folder, folder, tmp_path)
+        assert find_file(new, folder, folder, tmp_path).is_file()
+    written = migrated(tmp_path, "base: apa-told  # mine\nlimits: [parked, house]\n")
+    assert written == "extends: apa-external-slot  # mine\nrequirements: [parked, project]\n"
 
 
 def test_output_and_check_leave_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.judge import NEVER, judge
 from orchestrator.evaluation.verdict.numbers import facts_of
-from orchestrator.inputs.scenario.files import ROOM
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.requirements import Requirement, read_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
@@ -172,7 +172,7 @@ def test_a_file_names_its_faulty_entry(tmp_path: Path) -> None:
         read_requirements(file)
 
 
-@pytest.mark.parametrize("file", sorted((ROOM / "requirements").glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("file", sorted((LIBRARY / "requirements").glob("*.yaml")), ids=lambda path: path.stem)
 def test_shipped_sets_can_be_read_and_survive_a_log(file: Any) -> None:
     for requirement in read_requirements(file):
         assert Requirement.model_validate(requirement.model_dump(mode="json")) == requirement

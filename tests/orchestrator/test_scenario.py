@@ -138,7 +138,7 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
         ("faults: [{signal: vehicle.speed, kind: melt}]", r"faults\[1\]\.kind: 'melt'"),
         ("faults: [{signal: vehicle.speed, kind: stuck_at_last, when: 3}]", r"faults\[1\]\.when: unknown"),
         ("expected_outcome: glory", r"expected_outcome: 'glory'"),
-        ("requirements: [hous]", r"hous: no set of requirements of this name; did you mean house"),
+        ("requirements: [projec]", r"projec: no set of requirements of this name; did you mean project"),
         ("car: tank", r"tank: no car of this name; "),
         ("extends: guo2015-case9", r"guo2015-case9: no scenario of this name; did you mean guo2015-case"),
         ("extends: mine.yaml", r"extends: inherits from itself"),

@@ -27,7 +27,7 @@ SSM = """<ssm:ParameterMapping xmlns:ssm="http://ssp-standard.org/SSP1/SystemStr
 JUDGED = """
 name: yard
 extends: guo2015-case4
-requirements: [house]
+requirements: [project]
 system:
   ssp: yard.ssp
   frames: {nautical: {y: right, ahead: 2.405 m}}

@@ -1,4 +1,4 @@
-"""A standard's numbers stand in orchestrator/requirements alone; other places are checked against it."""
+"""A standard's numbers stand in orchestrator/library/requirements alone; other places are checked against it."""
 
 import pytest
 

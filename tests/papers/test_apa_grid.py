@@ -71,10 +71,10 @@ def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) 
 
 
 @needs_compiler
-def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[GridRun]) -> None:
+def test_project_limits_are_met_where_the_slot_allows_three_shifts(results: list[GridRun]) -> None:
     group = [item for item in results if item.case.kind == 2 or item.case.extra > 0.0]
-    assert sum(item.is_house for item in group) >= 0.93 * len(group)
-    assert all(item.is_house_except_manoeuvres for item in results if item.is_house)
+    assert sum(item.is_within_limits for item in group) >= 0.93 * len(group)
+    assert all(item.is_within_limits_but_manoeuvres for item in results if item.is_within_limits)
 
 
 @needs_compiler

@@ -17,7 +17,7 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.drive import drive
 
-SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
 AS_MEANT = (
     "apa-driver-drives",
@@ -38,12 +38,12 @@ AS_MEANT = (
     "apa-slot-too-shallow",
     "apa-switched-off",
     "apa-takeover",
-    "apa-told-wrong",
+    "apa-external-slot-occupied",
     "cicap-bicycle",
     "cicap-child",
-    "cicap-thing-in-slot",
+    "cicap-object-in-slot",
     "valet-search-perpendicular",
-    "valet-told-wrong",
+    "valet-external-slot-occupied",
 )
 """Those that end as they are meant to; the others need what the system does not have yet, or go wrong."""
 

@@ -9,7 +9,7 @@ import yaml
 
 from orchestrator.cli import main
 
-SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 
 
 def as_parking(name: str, folder: Path, **changes: Any) -> str:

@@ -143,7 +143,7 @@ def test_a_file_may_ask_for_further_columns(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(
         "scenario: guo2015-case4\nset: {stop_time: 3}\nruns: {grid: {vehicle.body: [0, 1]}}\n"
         "measures: {fastest: {largest: vehicle.speed}}\n"
-        "within: {house: [house], mine: [{id: a, signal: duration, max: 1, source: me}]}\n"
+        "within: {project: [project], mine: [{id: a, signal: duration, max: 1, source: me}]}\n"
     )
     found = columns_in_memory(read_study(str(tmp_path / "s.yaml"), {"seed": "7", "vehicle.start.x": "1 cm"}))
     assert np.abs(found["fastest"]).tolist() == found["max_speed"].tolist()

@@ -24,11 +24,12 @@ from orchestrator.studies.sweep.study.study import Study
 from tests.twin.replays import CLibrary, Fmi3, played
 
 LIKE_OTHERS = (
-    *("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-told-wrong", "apa-slot-too-shallow"),
+    *("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-slot-too-shallow"),
+    "apa-external-slot-occupied",
     *("apa-switched-off", "apa-parallel-tight", "apa-parallel-left", "apa-parallel-walls", "apa-parallel-deep"),
     *("apa-perpendicular-tight", "apa-perpendicular-walls", "apa-pedestrian-stays", "apa-not-confirmed"),
     *("apa-parallel", "apa-perpendicular", "apa-driver-drives", "apa-driver-brakes", "apa-over-speed", "cicap-pillar"),
-    *("apa-parallel-fast", "apa-perpendicular-left", "apa-told-nose-in", "cicap-child", "cicap-bicycle"),
+    *("apa-parallel-fast", "apa-perpendicular-left", "apa-external-slot-nose-in", "cicap-child", "cicap-bicycle"),
     *("guo2015-case1-105", "guo2015-case2-105", "guo2015-case3-105", "guo2015-case5-105"),
     *("guo2015-case2", "guo2015-case3", "guo2015-case5", "guo2015-case4-far", "guo2015-case4-left"),
     *("preview-8", "preview-18", "preview-geometry", "preview-printed"),

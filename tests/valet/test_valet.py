@@ -156,7 +156,7 @@ class Twin(ModelInstance):
     ("name", "stop"),
     [
         pytest.param("valet-angled-45", 22.0, marks=pytest.mark.release),
-        ("valet-thing-in-the-way", 24.0),
+        ("valet-obstacle-on-path", 24.0),
         ("valet-search-perpendicular", 13.0),
     ],
 )

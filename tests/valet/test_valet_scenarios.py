@@ -23,7 +23,7 @@ from tests.planning.scenes import CAR, least_clearance, tpcap_folder
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
-REASONS = {"valet-blocked": "blocked", "valet-no-way": "no_path", "valet-told-wrong": "slot_contradicted"}
+REASONS = {"valet-blocked": "blocked", "valet-no-path": "no_path", "valet-external-slot-occupied": "slot_contradicted"}
 CASE = "1.0,3.0,0.1,-1.2,-2.0,0.0,2,4,4,-9,-3,-3.5,-3,-3.5,-1,-9,-1,5,-3,9,-3,9,-1,5,-1"
 
 
@@ -48,7 +48,7 @@ def test_a_shipped_scenario_ends_as_it_should(name: Any, files: Any) -> None:
 
 
 def test_something_in_the_way_is_planned_around_and_somebody_who_goes_is_waited_for(files: Any) -> None:
-    _, around, _ = driven("valet-thing-in-the-way", files)
+    _, around, _ = driven("valet-obstacle-on-path", files)
     assert around.signals["controller.valet.plans"].max() == 2
     assert around.signals["controller.valet.seen"].max() == 1
     _, waited, _ = driven("valet-pedestrian", files)

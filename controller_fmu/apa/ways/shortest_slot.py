@@ -1,6 +1,6 @@
 """The shortest slot that a standard asks a car to be parked in.
 
-Its numbers stand in ``orchestrator/requirements/slots``; a test holds those here equal to them.
+Its numbers stand in ``orchestrator/library/requirements/slots``; a test holds those here equal to them.
 """
 
 from typing import NamedTuple

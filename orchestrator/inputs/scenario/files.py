@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
-from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.errors import MIGRATE, BadInput, suggestion_or_choices
+from orchestrator.inputs.text.renamed_names import SHIPPED_NAMES
 
-ROOM = Path(__file__).parents[2]
+LIBRARY = Path(__file__).parents[2] / "library"
+"""Folder of the shipped scenarios, cars, sets of requirements, studies, standards and viewer layouts."""
 
 ADVICE = {
     ".csv": "; a benchmark scene becomes a scenario by: apa import",
@@ -18,7 +20,7 @@ ADVICE = {
 
 def library_names(folder: str) -> list[str]:
     """Return the names of the shipped files in ``folder``, sorted."""
-    return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
+    return sorted(path.stem for path in (LIBRARY / folder).glob("*.yaml"))
 
 
 def car_names() -> list[str]:
@@ -33,7 +35,7 @@ def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
         if not path.is_file():
             raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=name)
         return path.resolve()
-    file = ROOM / folder / f"{name}.yaml"
+    file = LIBRARY / folder / f"{name}.yaml"
     if file.is_file():
         return file
     suffix = Path(name).suffix
@@ -42,6 +44,9 @@ def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
             f"expected a {what}: a file .yaml or .ssp, or a name of `apa list {folder}`{ADVICE.get(suffix, '')}",
             file=name,
         )
+    now = SHIPPED_NAMES.get(folder, {}).get(name)
+    if now:
+        raise BadInput(f"no {what} of this name; it is called {now} now{MIGRATE}", key=name)
     known = library_names(folder)
     hint = suggestion_or_choices(name, known, listing=f"apa list {folder}")
     raise BadInput(f"no {what} of this name{hint}", key=name)

@@ -65,7 +65,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged.setdefault("name", path.stem)
     car = vehicle_definition([(content.get("car"), file) for content, file in layers], path.parent)
     merged["car"] = car.name
-    merged["requirements"] = requirements_of(merged.get("requirements", ["house"]), path.parent, path)
+    merged["requirements"] = requirements_of(merged.get("requirements", ["project"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner, model in models_for(_system_request(layers)).items():
         given = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))

@@ -106,7 +106,7 @@ def _walk(node: yaml.Node, text: str, path: tuple[str, ...], *, is_study: bool =
     if isinstance(node, yaml.SequenceNode):
         for item in node.value:
             if isinstance(item, yaml.ScalarNode):
-                yield from _names(item, text)
+                yield from _value(_key_of_list(path), item, text, is_item=True)
             yield from _walk(item, text, path, is_study=is_study)
     if not isinstance(node, yaml.MappingNode):
         return
@@ -117,6 +117,11 @@ def _walk(node: yaml.Node, text: str, path: tuple[str, ...], *, is_study: bool =
         if isinstance(value, yaml.ScalarNode):
             yield from _value(str(key.value), value, text)
         yield from _walk(value, text, path if within is None else within, is_study=is_study)
+
+
+def _key_of_list(path: tuple[str, ...]) -> str:
+    """Return the key whose values the items of a list are; below ``within`` of a study are sets of requirements."""
+    return "requirements" if path[:1] == ("within",) else path[-1] if path else ""
 
 
 def _within(path: tuple[str, ...], key: str, *, is_study: bool) -> tuple[str, ...] | None:
@@ -142,13 +147,13 @@ def _key(key: yaml.Node, text: str, path: tuple[str, ...]) -> Iterator[_Edit]:
             yield _Edit(match.start(), match.end(), key.start_mark.line + 1, ".".join(own))
 
 
-def _value(key: str, value: yaml.ScalarNode, text: str) -> Iterator[_Edit]:
-    new = VALUES.get(key, {}).get(str(value.value))
+def _value(key: str, value: yaml.ScalarNode, text: str, *, is_item: bool = False) -> Iterator[_Edit]:
+    new = VALUES.get(current_name(key), {}).get(str(value.value))
     if new is not None:
         raw = text[value.start_mark.index : value.end_mark.index]
         at = value.start_mark.index + raw.index(str(value.value))
         yield _Edit(at, at + len(str(value.value)), value.start_mark.line + 1, new)
-    elif key == "signal" or "." in str(value.value):
+    elif key == "signal" or "." in str(value.value) or is_item:
         yield from _names(value, text)
 
 

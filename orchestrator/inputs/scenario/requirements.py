@@ -1,6 +1,6 @@
 """Requirements as data: a signal or a metric of the summary, a condition, a window, a limit, a source.
 
-The limits of a scenario, the shipped sets in ``orchestrator/requirements`` and the files of ``apa check``
+The limits of a scenario, the shipped sets in ``orchestrator/library/requirements`` and the files of ``apa check``
 are all lists of these.
 """
 
@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.text.errors import BadInput, format_value, suggestion_or_choices
 from orchestrator.inputs.text.quantities import Seconds, parse_quantity
 from orchestrator.inputs.text.yaml_file import explain, place_in, read_yaml
@@ -19,7 +20,7 @@ Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
 Where = Literal["target", "slot", "kerb", "obstacles", "scene"]
 """What a scenario may have; a kerb counts where it bounds the slot, ``scene`` is anything to touch."""
-REQUIREMENT_SETS = Path(__file__).parents[2] / "requirements"
+REQUIREMENT_SETS = LIBRARY / "requirements"
 """Where the shipped sets are."""
 
 

@@ -117,7 +117,7 @@ class Scenario(_ScenarioPart):
     faults: list[Fault] = []
     """Disturbances of signals."""
     requirements: list[Requirement] = []
-    """Requirements, and names of shipped sets of requirements; by default the set `house`."""
+    """Requirements, and names of shipped sets of requirements; by default the set `project`."""
     contact_allowed: bool = False
     """If true, contact with an obstacle does not exclude the outcomes `parked` and `finished`."""
     stop_condition: EndCondition = EndCondition()

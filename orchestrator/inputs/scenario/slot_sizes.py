@@ -1,4 +1,4 @@
-"""The shortest slots that standards ask a system to use: numbers as data, in ``orchestrator/requirements/slots``."""
+"""The shortest slots that standards ask a system to use, as data: ``orchestrator/library/requirements/slots``."""
 
 from orchestrator.inputs.scenario.requirements import REQUIREMENT_SETS
 from orchestrator.inputs.text.quantities import parse_quantity

@@ -64,12 +64,29 @@ METRICS = {
     "steering_effort": "steering_travel",
 }
 """Metrics of a run, as requirements name them."""
+SHIPPED_NAMES = {
+    "requirements": {"driver-told": "driver-information", "house": "project"},
+    "scenarios": {
+        "apa-told": "apa-external-slot",
+        "apa-told-nose-in": "apa-external-slot-nose-in",
+        "apa-told-wrong": "apa-external-slot-occupied",
+        "cicap-thing-in-slot": "cicap-object-in-slot",
+        "valet-no-way": "valet-no-path",
+        "valet-thing-in-the-way": "valet-obstacle-on-path",
+        "valet-told": "valet-external-slot",
+        "valet-told-wrong": "valet-external-slot-occupied",
+    },
+}
+"""Folder of the library -> names of its files."""
 VALUES = {
+    "extends": SHIPPED_NAMES["scenarios"],
+    "requirements": SHIPPED_NAMES["requirements"],
+    "scenario": SHIPPED_NAMES["scenarios"],
     "kind": {"drop": "dropout", "freeze": "stuck_at_last"},
     "task": {"run": "open_loop"},
     "where": {"polygons": "obstacles"},
 }
-"""Key -> its values; ``kind`` is that of a fault."""
+"""Key -> its values, or those of its list; ``kind`` is that of a fault."""
 OPTIONS = {
     "--corpus": "--regression",
     "--every": "--stride",

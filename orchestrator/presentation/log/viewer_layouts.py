@@ -1,4 +1,4 @@
-"""The layouts in ``orchestrator/layouts`` for MCAP viewers; run as a module it writes them anew.
+"""The layouts in ``orchestrator/library/layouts`` for MCAP viewers; run as a module it writes them anew.
 
 Foxglove and Lichtblick read the same format and differ in the key of a panel's title.
 """
@@ -7,9 +7,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.presentation.drawing.panels import MODES, PANELS
 
-LAYOUT_FOLDER = Path(__file__).parents[2] / "layouts"
+LAYOUT_FOLDER = LIBRARY / "layouts"
 TITLES = {"foxglove": "foxglovePanelTitle", "lichtblick": "lichtblickPanelTitle"}
 DRAWN = ("/scene", "/path", "/trail")
 

@@ -46,7 +46,7 @@ class Drive(NamedTuple):
 
 def exact_limits() -> tuple[Requirement, ...]:
     """Return the limits of an exact drive: lateral, heading."""
-    return library_requirements("house", "final lateral position", "final heading")
+    return library_requirements("project", "final lateral position", "final heading")
 
 
 def drives(columns: Mapping[str, Any]) -> list[Drive]:

@@ -33,7 +33,7 @@ CONTENT = {
 FOOTNOTES = (
     "Medians of the parked runs. Refused: no path from this start. Parked: the controller reports it, at standstill "
     "in the slot, within the limits of GB/T 41630, without contact. Exact: also within the lateral and heading limits "
-    "of the set house.",
+    "of the set project.",
     "apa has no slot, target or start as input: it drives past at 2 m/s along the line through the start pose, with "
     "1 cm of sensor noise, and chooses where it starts to park. Its time counts from the driver's confirmation, its "
     "clearance includes the search. It chooses its longitudinal position, so longitudinal errors are not compared.",

@@ -40,7 +40,7 @@ from orchestrator.studies.papers.result import (
 
 TITLE = "APA: from looking for a slot to parked (ADAS algorithm design 8)"
 SCENARIOS = ("apa-parallel", "apa-perpendicular", "apa-parallel-tight", "apa-takeover")
-CORNERS = "apa-told"
+CORNERS = "apa-external-slot"
 """Parks in a slot whose corners are inputs, where the sensors by themselves find none."""
 CARS = ("guo2015", "zhang2022")
 """Shipped cars; those of CommonRoad turn their front wheels by 52 deg and more."""

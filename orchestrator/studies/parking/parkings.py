@@ -38,7 +38,7 @@ MEASURES = {
     **{name: Measure("first", signal, SHOWN) for name, signal in SIGNALS.items()},
 }
 GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}
-HOUSE, HOUSE_BUT_SHIFTS = "house", "house, but for the manoeuvres"
+PROJECT_LIMITS, PROJECT_LIMITS_BUT_MANOEUVRES = "project", "project, but for the manoeuvres"
 
 
 class GridRun(NamedTuple):
@@ -66,9 +66,9 @@ class GridRun(NamedTuple):
     """It stood inside the start range, see :mod:`orchestrator.studies.parking.start_range`."""
     is_gbt: bool
     """Parked within GB/T 41630: heading, lateral position, manoeuvres, no contact."""
-    is_house: bool
-    """Parked within the house limits."""
-    is_house_except_manoeuvres: bool
+    is_within_limits: bool
+    """Parked within the project limits."""
+    is_within_limits_but_manoeuvres: bool
     """The same with the manoeuvres of GB/T 41630."""
 
     @property
@@ -107,8 +107,8 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
         0 if math.isnan(row["shown.kind"]) else int(row["shown.kind"]),
         bool(row["inside"]),
         bool(gbt),
-        bool(gbt and row[WITHIN.format(HOUSE)]),
-        bool(gbt and row[WITHIN.format(HOUSE_BUT_SHIFTS)]),
+        bool(gbt and row[WITHIN.format(PROJECT_LIMITS)]),
+        bool(gbt and row[WITHIN.format(PROJECT_LIMITS_BUT_MANOEUVRES)]),
     )
 
 

@@ -13,9 +13,9 @@ from orchestrator.studies.parking.parkings import (
     FAILED,
     FOUND,
     GBT,
-    HOUSE,
-    HOUSE_BUT_SHIFTS,
     MEASURES,
+    PROJECT_LIMITS,
+    PROJECT_LIMITS_BUT_MANOEUVRES,
     GridRun,
     parkings,
 )
@@ -24,7 +24,7 @@ from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
 
 GBT_SETS = dict(zip(KINDS, ("gbt41630", "gbt41630-perpendicular"), strict=True))
-CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="house")
+CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="project")
 
 
 def study(lot: int = 0) -> Study:
@@ -44,8 +44,8 @@ def study_of(chosen: list[GridCase]) -> Study:
     }
     within = {
         **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
-        HOUSE: [*library_requirements("apa"), CLEAR],
-        HOUSE_BUT_SHIFTS: [*library_requirements("apa-tight"), CLEAR],
+        PROJECT_LIMITS: [*library_requirements("apa"), CLEAR],
+        PROJECT_LIMITS_BUT_MANOEUVRES: [*library_requirements("apa-tight"), CLEAR],
     }
     return Study(scenario, design, content, measures=MEASURES, within=within, derived=FOUND)
 
@@ -68,7 +68,7 @@ def totals(found: list[GridRun]) -> dict[str, int]:
         "runs": len(found),
         "touched something": sum(item.nearest <= 0.0 for item in found),
         "parked within GB/T 41630": sum(item.is_gbt for item in found),
-        "parked within the house limits": sum(item.is_house for item in found),
+        "parked within the project limits": sum(item.is_within_limits for item in found),
         "ended in Fail with a reason": sum(item.mode == FAILED and item.is_ended for item in found),
         "ended in neither way": sum(not item.is_ended for item in found),
         "slot found": sum(item.kind != 0 for item in found),
@@ -80,7 +80,7 @@ def totals(found: list[GridRun]) -> dict[str, int]:
 def line(item: GridRun) -> str:
     """Return one run in words."""
     case = item.case
-    verdict = "house" if item.is_house else "gbt" if item.is_gbt else "-"
+    verdict = "project" if item.is_within_limits else "gbt" if item.is_gbt else "-"
     return (
         f"{case.number:4d} {case.car} {KINDS[case.kind]} {SIDES[case.side]} +{case.extra:.1f} m, "
         f"{case.beside:.1f} m beside, {math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
@@ -124,7 +124,7 @@ def _totals(found: list[GridRun]) -> Printed:
 def _by_size(found: list[GridRun]) -> Printed:
     """Return how the limits are met in slots of each size: what a slot allows depends on it."""
     table = Printed(box=None, pad_edge=False)
-    columns = ("slot", "runs", "GB/T", "house", "house, but manoeuvres as GB/T", "manoeuvres", "nearest")
+    columns = ("slot", "runs", "GB/T", "project", "project, but manoeuvres as GB/T", "manoeuvres", "nearest")
     for name in columns:
         table.add_column(name, justify="left" if name == "slot" else "right")
     for kind, extra in [(kind, extra) for kind, extras in EXTRA.items() for extra in extras]:
@@ -134,8 +134,8 @@ def _by_size(found: list[GridRun]) -> Printed:
         manoeuvres = sorted(item.manoeuvres for item in group)
         table.add_row(
             f"{KINDS[kind]}, ISO's shortest + {extra:.1f} m",
-            *map(str, (len(group), sum(item.is_gbt for item in group), sum(item.is_house for item in group))),
-            str(sum(item.is_house_except_manoeuvres for item in group)),
+            *map(str, (len(group), sum(item.is_gbt for item in group), sum(item.is_within_limits for item in group))),
+            str(sum(item.is_within_limits_but_manoeuvres for item in group)),
             f"{manoeuvres[0]} to {manoeuvres[-1]}",
             f"{100.0 * min(item.nearest for item in group):.0f} cm",
         )

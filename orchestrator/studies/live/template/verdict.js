@@ -97,7 +97,7 @@ function stateNames(models, signal) {
   return found && found[7] ? model.states[found[7]] : {};
 }
 
-const CONTACT_ID = "free of contact"; // orchestrator/requirements/contact-free.yaml
+const CONTACT_ID = "free of contact"; // orchestrator/library/requirements/contact-free.yaml
 
 const stateName = (names, value) => (Number.isFinite(value) ? names[value] ?? String(value) : "nan");
 

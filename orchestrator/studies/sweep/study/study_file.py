@@ -6,12 +6,13 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.scenario import Name
 from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 from orchestrator.inputs.text.yaml_file import explain, read_mapping
 
 MOST_RUNS = 100_000_000
-SHIPPED_STUDIES = Path(__file__).parents[3] / "studies"
+SHIPPED_STUDIES = LIBRARY / "studies"
 
 
 class _StudyPart(BaseModel):

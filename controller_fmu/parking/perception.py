@@ -17,7 +17,7 @@ from controller_fmu.parking.map.facing_surface import (
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin, range_in_map
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, direction_of, range_in_map
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
     ReadingStatus,
@@ -137,11 +137,9 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     planned = range_in_map(sensor, memory.plan.obstacles, sensors.max_range)
     expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
     unexplained = measured < expected.distance - params.monitor.unexplained
-    distance = max(expected.distance, sensors.min_range)
-    ux = (expected.x - sensor.x) / distance
-    uy = (expected.y - sensor.y) / distance
+    towards = direction_of(expected, sensor)
     is_side = expected.origin == EchoOrigin.INTERIOR
-    return with_expectation(track, expected.distance, ux, uy, is_side, unexplained)
+    return with_expectation(track, expected.distance, towards.x, towards.y, is_side, unexplained)
 
 
 def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:

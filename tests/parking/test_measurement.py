@@ -11,7 +11,12 @@ from hypothesis import strategies as st
 from controller_fmu.parking.measurement.cycle import MeasurementCycle, next_cycle
 from controller_fmu.parking.measurement.echo_feature import EchoFeature, FeatureType, echo_feature, fit_range
 from controller_fmu.parking.measurement.echo_window import WINDOW, EchoWindow, push_echo
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predicted_range_to_segment
+from controller_fmu.parking.measurement.predicted_range import (
+    EchoOrigin,
+    PredictedRange,
+    direction_of,
+    predicted_range_to_segment,
+)
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose, reading_status, sensor_pose
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes, count_missed_echoes, is_silent
 from modelkit.car import Car, SensorMount
@@ -31,6 +36,23 @@ def test_predicted_range_is_that_of_the_exact_cone(ax: float, ay: float, bx: flo
         return
     assert predicted.distance == pytest.approx(exact, abs=1e-9)
     assert (predicted.origin == EchoOrigin.OUT_OF_VIEW) == (exact == NO_HIT)
+
+
+@given(st.floats(1e-6, 5.0), st.floats(-3.0, 3.0))
+def test_an_echo_has_a_direction_however_near_it_is_predicted(distance: float, bearing: float) -> None:
+    """A sensor measures 0.22 m where the map holds a corner 0.02 m away: its echo is not on the vehicle's flank."""
+    sensor = sensor_pose(SensorMount(), HALF, Pose(0.3, -0.2, 0.0))
+    predicted = PredictedRange(
+        distance, EchoOrigin.START, 0.3 + distance * math.cos(bearing), -0.2 + distance * math.sin(bearing)
+    )
+    towards = direction_of(predicted, sensor)
+    assert (towards.x, towards.y) == pytest.approx((math.cos(bearing), math.sin(bearing)), abs=1e-4)
+
+
+def test_an_echo_predicted_at_the_sensor_comes_along_its_axis() -> None:
+    sensor = sensor_pose(SensorMount(), HALF, Pose(0.3, -0.2, 0.5))
+    towards = direction_of(PredictedRange(0.0, EchoOrigin.START, 0.3, -0.2), sensor)
+    assert (towards.x, towards.y) == (sensor.axis_x, sensor.axis_y)
 
 
 def test_origin_of_an_echo() -> None:

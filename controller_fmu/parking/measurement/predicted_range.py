@@ -34,6 +34,16 @@ class PredictedRange(NamedTuple):
     y: float = 0.0
 
 
+def direction_of(predicted: PredictedRange, sensor: SensorPose) -> Point:
+    """Return the unit vector from a sensor to where its echo is predicted to come from; at the sensor itself its axis.
+
+    However near that is: a shorter vector would put an echo that is farther than predicted at the sensor.
+    """
+    if predicted.distance <= 0.0:
+        return Point(sensor.axis_x, sensor.axis_y)
+    return Point((predicted.x - sensor.x) / predicted.distance, (predicted.y - sensor.y) / predicted.distance)
+
+
 class _InBeam(NamedTuple):
     """The part of a segment inside a cone, as fractions of its length; low > high: none."""
 

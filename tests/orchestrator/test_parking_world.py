@@ -1,13 +1,33 @@
 """The parking study: the same rows for each system, what stands in its scenes, outcomes by the scene alone."""
 
+import itertools
+import math
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
+from modelkit.geometry import Box, boxes_depth, boxes_overlap, outline
+from modelkit.vocabulary import Pose
+from orchestrator.studies.parking.parking_world.bays import bay_count, in_bays, stands_in_a_bay
 from orchestrator.studies.parking.parking_world.factors import FACTORS, HITCH
-from orchestrator.studies.parking.parking_world.outcome import DRIVER, FALSE, MOVING, PARKED, STANDING, end_of, is_valid
+from orchestrator.studies.parking.parking_world.outcome import (
+    CAR,
+    DRIVER,
+    EMPTY,
+    FALSE,
+    MOVING,
+    PARKED,
+    STANDING,
+    end_of,
+    is_unavoidable,
+    is_valid,
+)
+from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
 from orchestrator.studies.parking.parking_world.study import VALET_SYSTEM, study
 from orchestrator.studies.sweep.study.space import Space
+from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
 SPACE = Space(FACTORS, lambda values, seeds: np.zeros((len(seeds), 1)))
 ROW = {"kind": 0, "outcome": "parked", "reason": "all checks passed", "steered": 1.0, "touched.speed": float("nan")}
@@ -28,16 +48,20 @@ def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
     found = parameters(f, np.arange(1, 201))
     along = np.where(f["kind"] == 0, f["length_b"], f["width_b"])
     first, second = (found[f"scene.boxes[{number}].x"] for number in ROWS["b"][:2])
-    assert second - first - along == pytest.approx(f["gap_b"])
+    lined = in_bays(f)
+    assert (second - first - along)[~lined] == pytest.approx(f["gap_b"][~lined])
+    assert (second - first)[lined] == pytest.approx(f["bay"][lined])
     for place, number in enumerate(ROWS["a"]):
-        assert np.array_equal(found[f"scene.boxes[{number}].length"] > 0.0, f["cars_a"] > place)
+        length = found[f"scene.boxes[{number}].length"]
+        assert (length[f["cars_a"] <= place] == 0.0).all()
+        assert (length[f["cars_a"] > place] > 0.0).mean() > 0.8  # the others would be in the driver's way
 
 
 def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
     f = drawn()
     found = parameters(f, np.arange(1, 201))
     valid = is_valid(f)
-    short = (f["kind"] == 0) & (f["overhang"] >= HITCH) & (f["overhang_length"] > f["extra"])
+    short = (f["kind"] == 0) & (f["overhang"] >= HITCH) & (f["overhang_length"] > f["extra"]) & (f["pillar"] != 2)
     assert short.any()
     assert not valid[short].any()
     assert not valid[found[f"scene.boxes[{BIN}].length"] > 0.0].any()
@@ -45,6 +69,129 @@ def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
     x, length = (found[f"scene.boxes[{OVERHANG}].{name}"][beside] for name in ("x", "length"))
     assert x - 0.5 * length == pytest.approx(np.zeros(beside.sum()))
     assert valid.mean() > 0.5
+
+
+class DrawnScene(NamedTuple):
+    """The scene of one row: obstacles by number, the car's sizes, and the driver's pass."""
+
+    obstacles: dict[int, Obstacle]
+    car: list[float]
+    start: Pose
+    end: float
+    speed: float
+    acceleration: float
+
+    def boxes(self, time: float) -> dict[int, Box]:
+        time_ns = round(time * 1e9)
+        return {n: obstacle_box(item, time_ns) for n, item in self.obstacles.items() if is_there(item, time_ns)}
+
+    def moves(self, number: int) -> bool:
+        return bool(self.obstacles[number].speed_x or self.obstacles[number].speed_y)
+
+
+@pytest.fixture(scope="module")
+def scenes() -> list[DrawnScene]:
+    count = 120
+    f = drawn(count)
+    found = {name: np.broadcast_to(values, count) for name, values in parameters(f, np.arange(1, count + 1)).items()}
+    slot = np.where(f["kind"] == 0, found["slot.length"], found["slot.width"])
+    return [
+        DrawnScene(
+            {
+                number: Obstacle(
+                    *(
+                        float(found.get(f"scene.boxes[{number}].{name}", {row: start})[row])
+                        for name, start in EMPTY.items()
+                    )
+                )
+                for number in range(1, SECOND_LEG + 1)
+            },
+            [float(found[f"vehicle.car.{name}"][row]) for name in CAR],
+            Pose(*(float(found[f"vehicle.start.{axis}"][row]) for axis in ("x", "y", "heading"))),
+            float(slot[row] + 12.0),
+            float(found["vehicle.driver.profile[1].speed"][row]),
+            float(found["vehicle.drive.acceleration_limit"][row]),
+        )
+        for row in range(count)
+    ]
+
+
+def test_nothing_in_a_scene_overlaps(scenes: list[DrawnScene]) -> None:
+    attached = {1, OVERHANG}
+    for row, scene in enumerate(scenes):
+        for time in np.arange(0.0, 65.0, 1.0):
+            boxes = scene.boxes(time)
+            for a, b in itertools.combinations(boxes, 2):
+                if {a, b} != attached and (time == 0.0 or scene.moves(a) or scene.moves(b)):
+                    assert boxes_depth(boxes[a], boxes[b]) < 1e-6, (row, time, a, b)
+
+
+def test_nothing_stands_in_the_drivers_pass(scenes: list[DrawnScene]) -> None:
+    for row, scene in enumerate(scenes):
+        x, y, heading = scene.start
+        standing = scene.boxes(0.0)
+        for travelled in np.arange(0.0, scene.end - x, 0.25):
+            pose = Pose(x + travelled, y + travelled * math.tan(heading), heading)
+            car = outline(pose, *scene.car)
+            assert not any(boxes_overlap(car, box) for box in standing.values()), (row, travelled)
+
+
+def test_no_driver_meets_a_pedestrian(scenes: list[DrawnScene]) -> None:
+    """Neither who searches as fast as the profile says, nor who slows down to 10 km/h from the begin."""
+    for row, scene in enumerate(scenes):
+        for speed in {scene.speed, min(scene.speed, 10.0 / 3.6)}:
+            for time in np.arange(0.0, 40.0, 0.1):
+                x = scene.start.x + max(speed * time - 0.5 * speed**2 / scene.acceleration, 0.0)
+                there = scene.boxes(time)
+                if x < scene.end and FIRST_LEG in there:
+                    pose = Pose(
+                        x, scene.start.y + (x - scene.start.x) * math.tan(scene.start.heading), scene.start.heading
+                    )
+                    assert not boxes_overlap(outline(pose, *scene.car), there[FIRST_LEG]), (row, time)
+
+
+def test_pedestrians_turn_where_they_are(scenes: list[DrawnScene]) -> None:
+    turned = 0
+    for scene in scenes:
+        first, second = scene.obstacles[FIRST_LEG], scene.obstacles[SECOND_LEG]
+        if first.length > 0.0 and second.length > 0.0:
+            turned += 1
+            assert first.y + first.speed_y * (first.disappear_at - first.moves_at) == pytest.approx(second.y)
+            assert second.x == first.x
+            assert second.appear_at == first.disappear_at
+    assert turned > 5
+
+
+def test_one_bay_is_a_slot_and_two_together_are_none() -> None:
+    f = {name: values[:1] for name, values in drawn(1).items()}
+    f |= {
+        name: np.array([value])
+        for name, value in {"kind": 1.0, "bays": 4.0, "bay": 2.5, "side": 0.0, "car": 0.0}.items()
+    }
+    f |= {f"{name}_{which}": np.zeros(1) for name in ("turn", "stagger") for which in "ab"}
+    found = parameters(f, np.array([1]))
+    assert bay_count(f) == 2.0
+    columns = {**f, **{name: np.asarray(values) for name, values in found.items()}, "manoeuvres": np.array([1])}
+
+    def stands(x: float, heading: float) -> bool:
+        pose = {"x": found["target.x"] + x, "y": found["target.y"], "heading": found["target.heading"] + heading}
+        return bool(stands_in_a_bay({**columns, **{f"final.{axis}": value for axis, value in pose.items()}})[0])
+
+    assert stands(0.0, 0.0)
+    assert stands(2.5, 0.0)
+    assert not stands(1.25, 0.0)  # on the line
+    assert not stands(5.0, 0.0)  # in the neighbour's bay
+    assert not stands(1.25, -0.5 * math.pi)  # along the road across both
+
+
+@pytest.mark.parametrize(("speed", "walks_at", "unavoidable"), [(0.0, 0.0, True), (1.0, 0.0, False), (1.0, 1e3, False)])
+def test_what_would_have_been_touched_standing(speed: float, walks_at: float, unavoidable: bool) -> None:
+    """A pedestrian crosses at x = 4 before a car that reaches up to x = 3.9; 1 m farther back it is clear of him."""
+    person = {"x": 4.0, "y": -3.0, "length": 0.5, "width": 0.5, "speed_y": 1.0, "moves_at": walks_at}
+    row = {f"vehicle.scene.boxes[{FIRST_LEG}].{name}": value for name, value in person.items()}
+    row |= dict(zip((f"vehicle.car.{name}" for name in CAR), (2.6, 0.9, 0.8, 1.8), strict=True))
+    row |= {"touched.x": 0.4, "touched.y": 0.0, "touched.heading": 0.0, "touched.front_wheel_angle": 0.0}
+    assert is_unavoidable({**row, "touched.speed": speed, "touched.time": 2.0}) == unavoidable
 
 
 @pytest.mark.parametrize(

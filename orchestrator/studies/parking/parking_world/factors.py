@@ -5,6 +5,8 @@ from orchestrator.studies.sweep.study.space import Factor
 
 NONE, HITCH, RACK = 0, 1, 2
 WALL, PARKED_CARS = 1, 2
+NO_BAYS = 2
+"""Choices of the factor ``bays`` up to this one: no bay lines; beyond it, the number of empty bays."""
 ROW = (
     Factor("cars_a", "1", 0, 0, 3, "cars beyond the first neighbour", ("0", "1", "2", "3")),
     Factor("cars_b", "1", 0, 0, 3, "cars beyond the second neighbour", ("0", "1", "2", "3")),
@@ -20,6 +22,16 @@ SURROUNDINGS = (
     Factor("bin", "1", 0, 0, 9, "in the slot, which is then none", (*("none",) * 9, "bin")),
     Factor("lost_count", "1", 0, 0, 11, "sensors that fail at once", tuple(map(str, range(1, 13)))),
 )
+BAYS = (
+    Factor(
+        "bays", "1", 0, 0, 5, "empty bays of a perpendicular row with lines", ("none", "none", "none", "1", "2", "3")
+    ),
+    Factor("bay", "m", 2.3, 2.5, 2.9, "width of a bay"),
+)
+TURN = (
+    Factor("person_turn", "1", 0, 0, 3, "before the slots a pedestrian goes", ("on", "on", "forwards", "backwards")),
+    Factor("person_turn_at", "m", 0.6, 1.0, 2.0, "from the slots, where a pedestrian turns along the road"),
+)
 WIDER = {
     "person_speed": (0.5, 2.5),
     "slope": (-12.0, 12.0),
@@ -27,7 +39,7 @@ WIDER = {
     "kerb_height": (0.03, 0.2),
 }
 """Ranges of factors of ``apa-world``, by name."""
-OWN = (*ROW, *SURROUNDINGS)
+OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN)
 
 
 def _widen(factor: Factor) -> Factor:

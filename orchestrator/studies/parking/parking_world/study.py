@@ -12,6 +12,7 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS
+from orchestrator.studies.parking.parking_world.bays import in_bays
 from orchestrator.studies.parking.parking_world.factors import FACTORS
 from orchestrator.studies.parking.parking_world.outcome import (
     DRIVER,
@@ -28,7 +29,9 @@ from orchestrator.studies.parking.parking_world.scene import parameters
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
+from orchestrator.studies.parking.world.asked import HEARD
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
+from orchestrator.studies.parking.world.scene import WITH_KERB
 from orchestrator.studies.sweep.fields import Field, find_field
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Seeds, Space
@@ -38,8 +41,10 @@ from orchestrator.studies.sweep.table import Table
 APA_SYSTEM = 5
 VALET_SYSTEM = 7
 OF_SYSTEM = {VALET_SYSTEM: {"search.active": True, "plan.margin": 0.12}}
-"""Parameters of a system that searches only if it is told to."""
+"""Parameters of a system that searches only where its parameter is set."""
 MOST_ROWS = 20
+KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
+"""GB/T 41630, between tyres and kerb [m]."""
 
 
 def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
@@ -102,7 +107,7 @@ def report(table: Table, folder: Path) -> int:
 
 
 def groups_of(table: Table) -> dict[str, Array]:
-    """Return which runs are told apart: a name, and for each run whether it is one of them."""
+    """Return the groups of runs: a name, and for each run whether it is one of them."""
     kinds = table.column("kind")
     quiet = (table.column("person") < NOBODY) & (table.column("mover") < NOBODY) & (table.column("lost") < NO_SENSOR)
     rows = (table.column("cars_a") + table.column("cars_b")) > 0
@@ -124,6 +129,20 @@ def shares_of(table: Table) -> list[str]:
             f"parked of valid, {name}: {count} of {total}, {share:.2f} % (95 %: {interval}); "
             f"of all runs {full} of {len(ends)}"
         )
-    contacts = {end: int((ends == end).sum()) for end in (MOVING, STANDING, DRIVER)}
-    lines.append(f"contacts of {len(ends)} runs: " + ", ".join(f"{end} {count}" for end, count in contacts.items()))
+    touched = {end: ends == end for end in (MOVING, STANDING, DRIVER)}
+    unavoidable = table.column("unavoidable") == 1.0
+    counts = (f"{end} {int(rows.sum())} ({int((rows & unavoidable).sum())})" for end, rows in touched.items())
+    lines.append(f"contacts of {len(ends)} runs (also if the car had stood for 1 s): " + ", ".join(counts))
+    bays = in_bays({name: table.column(name) for name in ("kind", "bays")})
+    lines.append(f"in one of the empty bays: {int((parked & bays).sum())} of {int((bays & valid).sum())} valid")
+    lines.append(kerb_share(table, parked))
     return lines
+
+
+def kerb_share(table: Table, parked: Array) -> str:
+    """Return how many of those parked beside a kerb that sensors detect satisfy GB/T 41630 against it, too."""
+    kerb = (table.column("kind") == 0) & (table.column("behind") == WITH_KERB)
+    beside = parked & kerb & (table.column("kerb_height") >= HEARD)
+    nearest, farthest = table.column("final.kerb_nearest"), table.column("final.kerb_farthest")
+    near = beside & (nearest >= KERB_NEAREST) & (farthest <= KERB_FARTHEST)
+    return f"parked beside a detectable kerb, 5 to 35 cm from it: {int(near.sum())} of {int(beside.sum())}"

@@ -1,0 +1,89 @@
+"""Rows of bays with lines: cars stand in the middle of their bays, one to three bays between them are empty.
+
+The ground truth is the lines: the vehicle is parked in one bay, whichever, and not along the road across several.
+"""
+
+import math
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.ways.shortest_slot import shortest_slot
+from orchestrator.evaluation.verdict.standing import in_frames, outline_margin
+from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.parking.cases import CARS, ISO
+from orchestrator.studies.parking.parking_world.factors import NO_BAYS
+from orchestrator.studies.parking.study import GBT_SETS
+
+F = Mapping[str, Array]
+MAX_BAYS = 3
+POSE = ("x", "y", "heading")
+CLAIMED = ("final heading", "final lateral position", "outline in the slot", "manoeuvres")
+
+
+def bay_count(f: F) -> Array:
+    """Return how many bays are empty; 0: there are no lines."""
+    return np.where(f["kind"] == 0, 0.0, np.maximum(np.asarray(f["bays"]) - NO_BAYS, 0.0))
+
+
+def in_bays(f: F) -> NDArray[np.bool_]:
+    """Return whether the row has bays with lines."""
+    return np.asarray(bay_count(f) > 0.0)
+
+
+def side_room(f: F, which: str) -> Array:
+    """Return the distance [m] from the face of neighbour ``which`` to the line beside it."""
+    return np.asarray(0.5 * (np.asarray(f["bay"]) - f[f"width_{which}"]))
+
+
+def with_bays(f: F) -> dict[str, Array]:
+    """Return the factors with slot and gaps as bays make them; without a pillar, and a bin only in a single bay."""
+    bays, count = in_bays(f), bay_count(f)
+    length = count * f["bay"] + side_room(f, "a") + side_room(f, "b")
+    shortest = np.array([shortest_slot(Kind.PERPENDICULAR, car, ISO) for car in CARS.values()])
+    changed = {"extra": length - shortest[np.asarray(f["car"]).astype(int)], "pillar": 0.0 * length}
+    changed |= {f"gap_{which}": 2.0 * side_room(f, which) for which in "ab"}
+    changed["bin"] = np.where(count > 1.0, 0.0, f["bin"])
+    return {**f, **{name: np.where(bays, value, f[name]) for name, value in changed.items()}}
+
+
+def first_bay(f: F, found: F) -> dict[str, Array]:
+    """Return target and slot of the bay beside the first neighbour, where there are bays: the others follow along x."""
+    bays = in_bays(f)
+    middle = side_room(f, "a") + 0.5 * f["bay"]
+    upright = (1.0 - 2.0 * f["side"]) * 0.5 * math.pi
+    placed = {"target.x": middle, "slot.x": middle, "target.heading": upright, "slot.heading": upright}
+    placed["slot.width"] = np.asarray(f["bay"])
+    return {name: np.where(bays, value, found[name]) for name, value in placed.items()}
+
+
+def stands_in_a_bay(columns: Mapping[str, Array]) -> NDArray[np.bool_]:
+    """Return whether each vehicle stands in one of its empty bays, within GB/T 41630; False where there are none."""
+    turned, aside, out, manoeuvres = _limits()
+    poses = np.column_stack([columns[f"final.{axis}"] for axis in POSE])
+    wheelbase, front, rear, width = (
+        np.asarray(columns[f"vehicle.car.{name}"]) for name in ("wheelbase", "front_overhang", "rear_overhang", "width")
+    )
+    cars = np.column_stack([wheelbase + front, rear, 0.5 * width, wheelbase])
+    stands = np.full(len(poses), False)
+    for bay in range(MAX_BAYS):
+        shift = bay * np.asarray(columns["bay"])
+        target = np.column_stack([columns[f"target.{axis}"] for axis in POSE])
+        slot = np.column_stack([columns[f"slot.{name}"] for name in (*POSE, "length", "width")])
+        target[:, 0] += shift
+        slot[:, 0] += shift
+        _, lateral, heading = in_frames(poses, target).T
+        near = (np.abs(heading) <= turned) & (np.abs(lateral) <= aside) & (outline_margin(poses, slot, cars) >= -out)
+        stands |= near & (bay < bay_count(columns))
+    return np.asarray(stands & (np.asarray(columns["manoeuvres"]) <= manoeuvres))
+
+
+@cache
+def _limits() -> tuple[float, ...]:
+    """Return how far GB/T 41630 lets a vehicle be turned, aside and out of a perpendicular slot, and its manoeuvres."""
+    required = library_requirements(GBT_SETS[Kind.PERPENDICULAR], *CLAIMED)
+    return tuple(abs(float(item.limit)) for item in required)

@@ -17,7 +17,7 @@ ADVISED_SPEED = 10.0 / 3.6
 """A driver who slows down when prompted searches no slower than this [m/s]."""
 LET_PASS = 0.5
 """Who waits sets out this long [s] after the car has passed."""
-PAST = 12.0
+BEYOND_SLOT = 12.0
 """The driver passes the slot by so much [m]."""
 
 
@@ -49,7 +49,7 @@ def driver_pass(f: F, found: F, slot: Array) -> DriverPass:
         0.5 * found["vehicle.car.width"] / np.cos(heading),
         front,
         np.asarray(found["vehicle.car.rear_overhang"]),
-        slot + PAST,
+        slot + BEYOND_SLOT,
         np.asarray(found["vehicle.driver.profile[1].speed"]),
         np.asarray(found["vehicle.drive.acceleration_limit"]),
     )

@@ -182,7 +182,8 @@ def _overhang(f: F, found: F, swept: DriverPass) -> dict[str, Array]:
 def _mover_stops(f: F, found: F, rows: Boxes, swept: DriverPass) -> dict[str, Array]:
     """Return when neighbours move: along a row up to the next car or pillar, out of one once the driver has passed."""
     times: dict[str, Array] = {}
-    parallel, moved = f["kind"] == 0, np.abs(f["mover_way"])
+    parallel, travel = f["kind"] == 0, f["mover_way"]
+    moved = np.abs(travel)
     for which, number in NEIGHBOUR.items():
         low, high = _neighbour_extent(f, found, which, "x")
         beyond = rows[ROWS[which][0]]
@@ -190,9 +191,9 @@ def _mover_stops(f: F, found: F, rows: Boxes, swept: DriverPass) -> dict[str, Ar
         to_row = low - (beyond["x"] + half) if which == "a" else beyond["x"] - half - high
         to_row = np.where(beyond["length"] > 0.0, to_row, np.inf)
         to_pillar = np.where(f["pillar"] == PILLAR_AT[which], PILLAR_ROOM, np.inf)
-        room = np.maximum(np.where(f["mover_way"] > 0.0, to_pillar, to_row) - MOVER_ROOM, 0.0)
+        room = np.maximum(np.where(travel > 0.0, to_pillar, to_row) - MOVER_ROOM, 0.0)
         passed = last_time_at(swept, high + swept.rear) + LET_PASS
-        at = np.where(~parallel & (f["mover_way"] > 0.0), np.maximum(f["mover_at"], passed), f["mover_at"])
+        at = np.where(~parallel & (travel > 0.0), np.maximum(f["mover_at"], passed), f["mover_at"])
         times[f"scene.boxes[{number}].moves_at"] = at
         times[f"scene.boxes[{number}].halts_at"] = (
             at + np.where(parallel, np.minimum(moved, room), moved) / f["mover_speed"]

@@ -14,8 +14,10 @@ from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vert
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.predicted_range import range_in_map
+from controller_fmu.parking.measurement.sensor import SENSORS, SensorPose
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
+from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -202,6 +204,27 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
         Quad(first - ROW_EXTENSION, road.y, last + ROW_EXTENSION, road.y, True),
         Quad(road.x, road.y, road.x, min(a.front, b.front), True),
     )
+
+
+def without_explained(
+    echo: EchoObstacle, obstacles: ObstacleMap, half_angle: float, params: MonitorParams
+) -> EchoObstacle:
+    """Return a remembered echo, or none if ``obstacles`` explain it by now: one lies as near to its sensor.
+
+    Its point on the sensor's axis is only one of the arc that it may have come from.
+    """
+    if not echo.is_present:
+        return echo
+    sensor = SensorPose(
+        echo.x - echo.range * echo.ux,
+        echo.y - echo.range * echo.uy,
+        echo.ux,
+        echo.uy,
+        math.cos(half_angle),
+        math.sin(half_angle),
+    )
+    reach = echo.range + params.unexplained
+    return EchoObstacle() if range_in_map(sensor, obstacles, reach).distance < reach else echo
 
 
 def remember_echoes(before: tuple[EchoObstacle, ...], echoes: tuple[EchoObstacle, ...]) -> tuple[EchoObstacle, ...]:

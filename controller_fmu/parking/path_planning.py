@@ -8,10 +8,12 @@ from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outl
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.monitor.collision_monitor import landmark_distance
 from controller_fmu.parking.obstacle_map import (
+    REMEMBERED,
     KnownEchoes,
     VehiclePlace,
     away_from_vehicle,
     obstacle_map,
+    without_explained,
     without_inside,
 )
 from controller_fmu.parking.params import ParkingParams
@@ -117,15 +119,16 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
     if memory.plan.is_relaxed:
         beside = tuple(without_inside(beside[number], slot) for number in range(LANDMARKS))
-    perception = memory.perception
-    obstacles = obstacle_map(
-        beside,
-        slot,
-        KnownEchoes(perception.remembered, perception.echoes),
-        outline,
-        VehiclePlace(pose, road),
-        params.mapping,
+    place = VehiclePlace(pose, road)
+    mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
+    half_angle = params.car.ultrasonic.half_angle
+    before = memory.perception.remembered
+    remembered = tuple(
+        without_explained(before[number], mapped, half_angle, params.monitor) for number in range(REMEMBERED)
     )
+    memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
+    echoes = KnownEchoes(remembered, memory.perception.echoes)
+    obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
     goal = goal_pose(slot, outline, params.slot)
     cusps = max_cusps(slot, memory.progress.manoeuvres, params)
     request = PlanningRequest(pose, goal, outline, params.plan.margin, cusps)

@@ -159,6 +159,7 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
         ux,
         uy,
         HALF_SENSOR_SPACING if track.is_side and not unknown else 0.0,
+        distance,
     )
 
 

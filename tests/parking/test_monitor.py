@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
 from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.monitor.collision_monitor import (
@@ -28,6 +29,7 @@ from controller_fmu.parking.objects.track import (
     update_track,
     with_expectation,
 )
+from controller_fmu.parking.obstacle_map import without_explained
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
@@ -158,3 +160,18 @@ def test_every_state_has_a_way_out_and_faults_win() -> None:
         others = sum(1 << condition for condition in Condition if condition > Condition.FAULT)
         assert next_parking_state(state, others | 1 << Condition.FAULT) == ParkingState.FAILED
         assert next_parking_state(state, others | 1 << Condition.TAKEN_OVER) == ParkingState.TAKEOVER
+
+
+def test_a_remembered_echo_is_forgotten_once_the_map_explains_it() -> None:
+    """A rear outer sensor looks 30 deg aside: its echo of the wall behind is put on its axis, 7 cm before that wall."""
+    behind, aside = 0.5, math.radians(30.0)
+    ux, uy = -math.cos(aside), math.sin(aside)
+    echo = EchoObstacle(behind * ux, behind * uy, 0.0, True, True, ux, uy, 0.0, behind)
+    wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, 2.0, 1))
+    obstacles = ObstacleMap(wall + (Vertex(),) * (VERTICES - 2))
+    params = MonitorParams()
+    assert not without_explained(echo, obstacles, aside, params).is_present
+    assert without_explained(echo, ObstacleMap(), aside, params) == echo
+    aside_wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, -1.0, 1))
+    beside = ObstacleMap(aside_wall + (Vertex(),) * (VERTICES - 2))
+    assert without_explained(echo, beside, aside, params) == echo, "the sensor does not see it"

@@ -57,6 +57,8 @@ class EchoObstacle(NamedTuple):
     uy: float = 0.0
     half_length: float = 0.0
     """A side goes on across that direction for so far [m]: half way to the next sensor, which detects it beyond."""
+    range: float = 0.0
+    """Its distance from the sensor [m]."""
 
 
 class VehicleMotion(NamedTuple):

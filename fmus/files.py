@@ -23,6 +23,8 @@ ROOM = "apa-tmp-"
 """How the names of folders for a while begin."""
 NEW = "apa-new-"
 """How they begin until their lock is held: what is called ``ROOM`` and not locked is nobody's."""
+HIDDEN = "."
+"""Begins those that lie beside what they will be."""
 MIN_STALE_AGE = 60.0
 """A folder called ``NEW`` is left alone so long [s]."""
 PLAIN = re.compile(r"[A-Za-z0-9_./\\:~-]+")
@@ -150,19 +152,50 @@ def live_in(room: Path) -> None:
 def own_room() -> Path:
     """Return the folder of this process, locked while it lives; folders of processes that are gone are removed."""
     import shutil  # noqa: F401 - it must be there when the program is ended at once
-    import tempfile
 
     global _room
     if _room is None or not _room[0].is_dir():
-        parent = _plain_parent()
-        _remove_forsaken(parent)
-        new = Path(tempfile.mkdtemp(prefix=NEW, dir=parent))
-        handle = hold(new)
-        folder = new.with_name(f"{ROOM}{new.name.removeprefix(NEW)}")
-        new.rename(folder)
-        _room = folder, handle
+        _room = _lock_new_folder(_plain_parent(), "")
         atexit.register(remove_all_folders)
     return _room[0]
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """Give the path of a new folder to make, then move it to ``path`` in place of the one there.
+
+    It lies beside ``path``, hidden. What a killed process left there is removed first. Raises ``OSError``.
+    """
+    path = _resolve(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    room, handle = _lock_new_folder(path.parent, HIDDEN)
+    try:
+        made, former = room / path.name, room / f"{path.name}{MARK}"
+        yield made
+        if path.exists():
+            path.rename(former)
+        try:
+            made.rename(path)
+        except OSError:
+            if former.exists():
+                former.rename(path)
+            raise
+    finally:
+        remove_folder(room)
+        if handle >= 0:
+            os.close(handle)
+
+
+def _lock_new_folder(parent: Path, dot: str) -> tuple[Path, int]:
+    """Return a new folder in ``parent`` and the handle of its lock; those whose process is gone are removed."""
+    import tempfile
+
+    _remove_forsaken(parent, dot)
+    new = Path(tempfile.mkdtemp(prefix=f"{dot}{NEW}", dir=parent))
+    handle = hold(new)
+    folder = new.with_name(f"{dot}{ROOM}{new.name.removeprefix(f'{dot}{NEW}')}")
+    new.rename(folder)
+    return folder, handle
 
 
 def _plain_parent() -> Path:
@@ -175,14 +208,14 @@ def _plain_parent() -> Path:
     raise OSError(None, "no folder for temporary files with a path of plain letters; set TMPDIR to one")
 
 
-def _remove_forsaken(parent: Path) -> None:
+def _remove_forsaken(parent: Path, dot: str = "") -> None:
     """Remove the folders of processes that were killed: those whose lock nobody holds."""
     if os.name != "posix":
         return
-    for folder in (*parent.glob(f"{ROOM}*"), *parent.glob(f"{NEW}*")):
+    for folder in (*parent.glob(f"{dot}{ROOM}*"), *parent.glob(f"{dot}{NEW}*")):
         with suppress(OSError):
             state = folder.lstat()
-            is_made = folder.name.startswith(ROOM) or time.time() - state.st_ctime > MIN_STALE_AGE
+            is_made = folder.name.startswith(f"{dot}{ROOM}") or time.time() - state.st_ctime > MIN_STALE_AGE
             if is_made and not folder.is_symlink() and state.st_uid == os.getuid():
                 handle = hold(folder)
                 remove_folder(folder)

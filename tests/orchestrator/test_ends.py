@@ -30,6 +30,18 @@ DEAF = "exec('while True:\\n try: print(0, flush=True); time.sleep(60)\\n except
 """As an FMU that hangs: nothing that Python does ends it."""
 
 
+KILLED = """
+import os
+from pathlib import Path
+from orchestrator.cli import main
+def moved(move):
+    return lambda path, target: move(path, target) if ".apa-" in Path(target).name else os.kill(os.getpid(), 9)
+Path.rename, Path.replace = moved(Path.rename), moved(Path.replace)
+main({words})
+"""
+"""Killed as the first file, or folder, is moved to its place."""
+
+
 def started(code: str, **more: str) -> "subprocess.Popen[str]":
     environment = {**os.environ, "PYTHONPATH": str(ROOT), **more}
     pipe = subprocess.PIPE
@@ -144,6 +156,40 @@ def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch: pytest.
     child.communicate()
     files._remove_forsaken(tmp_path)
     assert not left.exists()
+
+
+@posix
+@pytest.mark.parametrize(
+    "words", [["export", "ros2", "RUN"], ["new", "controller", "mine"]], ids=["export ros2", "new controller"]
+)
+def test_a_folder_is_complete_or_absent_and_its_scratch_goes(words: list[str], tmp_path: Path) -> None:
+    """Killed while it writes; the same command then does it, and leaves nothing beside."""
+    if "ros2" in words:
+        pytest.importorskip("rosbags.highlevel", reason="the package rosbags is not installed")
+    short = ["guo2015-case4", "--set", "stop_time=0.3", "--fmus", "none", "--no-page"]
+    assert "ros2" not in words or main(["run", *short, "--out", str(tmp_path)]) == 1
+    words = [word.replace("RUN", str(tmp_path / "run.mcap")) for word in words]
+    words += ["--out", str(tmp_path / "out" / "bag")] if "ros2" in words else ["--out", str(tmp_path / "out")]
+    child = started(KILLED.format(words=words))
+    child.communicate()
+    assert child.returncode == -signal.SIGKILL
+    assert [path.name[:9] for path in (tmp_path / "out").iterdir()] == [".apa-tmp-"]
+    assert main(words) == 0
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [{"export": "bag", "new": "mine"}[words[0]]]
+
+
+def test_a_folder_that_cannot_be_made_leaves_the_one_there(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "old").write_text("kept")
+    with pytest.raises(FileExistsError), files.whole_folder(tmp_path / "out"):
+        (tmp_path / "out").mkdir()
+    with pytest.raises(FileNotFoundError), files.whole_folder(tmp_path / "out"):
+        pass
+    assert (tmp_path / "out" / "old").read_text() == "kept"
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    with files.whole_folder(tmp_path / "out") as made:
+        made.mkdir()
+    assert list((tmp_path / "out").iterdir()) == []
 
 
 def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:

@@ -3,14 +3,13 @@
 import argparse
 import os
 import re
-import shutil
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from string import Template
 
-from fmus.files import write_whole
+from fmus.files import whole_folder, write_whole
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.trust import trust_folder
 
@@ -110,8 +109,9 @@ def _file_name(name: str) -> str:
 
 def _package(kind: str, out: Path, name: str) -> int:
     """Write a package: law, scenario, tests."""
-    with _new_folder(out / name) as folder:
-        _write_templates(kind, folder, name)
+    folder = out / name
+    with _new_folder(folder) as made:
+        _write_templates(kind, made, name)
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
@@ -121,28 +121,26 @@ def _policy(out: Path, name: str, network: Path, given_period: float | None) -> 
     from fmus.policy_fmu import ACTION_PERIOD, BadPolicy, build_policy_fmu
 
     period = ACTION_PERIOD if given_period is None else given_period
-    with _new_folder(out / name) as folder:
+    folder = out / name
+    with _new_folder(folder) as made:
         if not network.is_file():
             raise BadInput("no such file", file=network)
         try:
-            build_policy_fmu(name, network, period, folder)
+            build_policy_fmu(name, network, period, made)
         except BadPolicy as error:
             raise BadInput(str(error), file=network) from error
-        _write_templates("policy", folder, name, period=f"{period:g}")
+        _write_templates("policy", made, name, period=f"{period:g}")
     print(f"{folder}: {name}.fmu, scenario, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
 
 @contextmanager
 def _new_folder(folder: Path) -> Iterator[Path]:
-    """Give a folder that is to be written, then trust it; nothing of it remains where that fails."""
+    """Give a folder to write, moved to its place when it is complete; then trust it."""
     if folder.exists():
         raise BadInput("is there already", file=folder)
-    try:
-        yield folder
-    except OSError:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+    with whole_folder(folder) as made:
+        yield made
     trust_folder(folder)
 
 

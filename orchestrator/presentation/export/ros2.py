@@ -1,12 +1,11 @@
 """``apa export ros2``: a run as a bag of ROS 2 (rosbag2 in MCAP) with its message definitions. Needs rosbags."""
 
 import argparse
-import shutil
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from fmus.files import whole_folder
 from fmus.installation import missing_package
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.owned import lock_with
@@ -64,11 +63,8 @@ def write_bag(path: Path, recording: Recording, names: Sequence[str], lines: lis
         from orchestrator.presentation.export.ros2_bag import Bag
     except ImportError:
         raise BadInput(missing_package("rosbags", "ros2")) from None
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".apa-new-", dir=path.parent) as folder:
-        made = Path(folder) / path.name
-        with Writer(made, version=METADATA_VERSION, storage_plugin=StoragePlugin.MCAP) as writer:
-            Bag(writer).write_run(recording, names, lines)
-        if path.exists():
-            shutil.rmtree(path)
-        made.replace(path)
+    with (
+        whole_folder(path) as made,
+        Writer(made, version=METADATA_VERSION, storage_plugin=StoragePlugin.MCAP) as writer,
+    ):
+        Bag(writer).write_run(recording, names, lines)

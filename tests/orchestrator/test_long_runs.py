@@ -20,7 +20,7 @@ from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.drawing.decimation import decimate, deviation
 from orchestrator.presentation.log import mcap_log
-from orchestrator.presentation.log.mcap_file import McapFile
+from orchestrator.presentation.log.mcap_file import HEADER_SIZE, McapFile
 from orchestrator.presentation.log.mcap_log import add_channel
 from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import read_log
@@ -224,7 +224,7 @@ def long_log(path: Path, rows: int) -> None:
     units = {"pose.x": "m", "pose.y": "m", "pose.heading": "rad", "speed": "m/s", "steering_wheel_angle": "rad"}
     units |= {f"more.s{k}": "1" for k in range(10)}
     variables = [Variable(name, float, Signal(unit, "a signal"), 0.0) for name, unit in units.items()]
-    file, encoder = McapFile(path), Encoder(variables)
+    file, encoder = McapFile(path), Encoder(variables, room=HEADER_SIZE)
     channel = add_channel(file, "/vehicle", "Vehicle", variables, ["output"] * len(units))
     for begin in range(0, rows, 2000):
         t_ns = np.arange(begin, min(begin + 2000, rows)) * 10_000_000

@@ -67,6 +67,7 @@ class Frames:
     """The frames of the car, of its front wheels and of its pose as odometry has it.
 
     All messages have one layout: numbers at fixed width, zeros included, so that many are a few array operations.
+    ``room``: bytes left free in front of each.
     """
 
     SHIFTS = np.array([0, 7, 14, 21, 28], dtype=np.int64)
@@ -76,7 +77,7 @@ class Frames:
     TIME_MARK = 1 << 30
     """As a varint it takes five bytes, which any number of seconds and nanoseconds fits into."""
 
-    def __init__(self, car: CarOutline) -> None:
+    def __init__(self, car: CarOutline, room: int = 0) -> None:
         message, marks = FrameTransforms(), iter(range(4 * 4))
         frames = ((WORLD, CAR), (WORLD, ODOMETRY), *((CAR, name) for name in FRONT_WHEELS))
         self._marks: list[float] = []
@@ -88,7 +89,7 @@ class Frames:
             else:
                 part.translation.x, part.translation.y = car.wheels()[number]
             part.rotation.z, part.rotation.w = self._mark(next(marks)), self._mark(next(marks))
-        template = message.SerializeToString(deterministic=True)
+        template = bytes(room) + message.SerializeToString(deterministic=True)
         self._template = np.frombuffer(template, dtype=np.uint8)[None, :]
         self._numbers = [template.index(struct.pack("<d", mark)) for mark in self._marks]
         varint = b"\x80\x80\x80\x80\x04"

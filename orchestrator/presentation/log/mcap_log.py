@@ -30,7 +30,7 @@ from orchestrator.evaluation.verdict.geometry import (
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.presentation.drawing import scene
 from orchestrator.presentation.log.line import MAX_LINES, Line, line_of
-from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
+from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, HEADER_SIZE, McapFile
 from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import VARIABLES, with_checksum
 from orchestrator.presentation.log.schema import PACKAGE, descriptor_set, file_descriptor
@@ -56,16 +56,16 @@ class _InstanceChannel:
         variables = [*instance.outputs.variables, *instance.inputs.variables]
         notes = ["local" if Role.LOCAL in item.roles else "output" for item in instance.outputs.variables]
         notes += ["input"] * len(instance.inputs.names)
+        inputs, outputs = columns
+        order = [*range(outputs.start, outputs.stop), *range(inputs.start, inputs.stop)]
         self._channel = add_channel(file, f"/{instance.name}", instance.name.title().replace("_", ""), variables, notes)
-        self._encoder = Encoder(variables)
+        self._encoder = Encoder(variables, order, HEADER_SIZE)
         self._file = file
-        self._inputs, self._outputs = columns
-        self.size = self._encoder.size
+        self.size = HEADER_SIZE + self._encoder.size
 
     def write(self, times: NDArray[np.int64], rows: Array) -> None:
         """Hand one message for each of ``times`` to the file."""
-        seen = np.concatenate([rows[:, self._outputs], rows[:, self._inputs]], axis=1)
-        self._file.write_rows(self._channel, times, self._encoder.rows(seen))
+        self._file.write_rows(self._channel, times, self._encoder.rows(rows))
 
 
 class McapLog:
@@ -89,7 +89,7 @@ class McapLog:
         if _frame_columns(instances):
             self._pictures.append(_Pictures(self._file, instances, scenario))
         size = CHUNK_SIZE if isinstance(to, Path) else 0  # a stream has each row at once
-        rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        rows = max(1, size // 2 // sum(channel.size for channel in self._channels))
         self.rows_per_chunk = rows
         self._values = all_values(instances)
         self._rows = np.empty((rows, len(self._values)))
@@ -102,17 +102,23 @@ class McapLog:
         self.observe_rows(np.array([t_ns], dtype=np.int64), self._values[None, :])
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:
-        """Keep many rows; each chunk's worth of them goes to the file at once."""
+        """Take many rows; those that do not fill half a chunk are kept."""
         for pictures in self._pictures:
             pictures.observe_rows(t_ns, rows)
-        begin = 0
+        begin, most = 0, len(self._times)
         while begin < len(t_ns):
-            end = min(len(t_ns), begin + len(self._times) - self._count)
-            filled = self._count + end - begin
-            self._times[self._count : filled], self._rows[self._count : filled] = t_ns[begin:end], rows[begin:end]
-            self._count, begin = filled, end
-            if filled == len(self._times):
-                self._write_rows()
+            rest = len(t_ns) - begin
+            if self._count == 0 and rest >= most:
+                end = begin + min(rest, 2 * most - 1)
+                self._write_rows(t_ns[begin:end], rows[begin:end])
+            else:
+                end = begin + min(rest, most - self._count)
+                filled = self._count + end - begin
+                self._times[self._count : filled], self._rows[self._count : filled] = t_ns[begin:end], rows[begin:end]
+                self._count = filled
+                if filled == most:
+                    self._write_kept()
+            begin = end
 
     def say(self, t_ns: int, level: int, name: str, text: str) -> None:
         """Write one line to ``/log``."""
@@ -129,17 +135,21 @@ class McapLog:
 
     def on_terminate(self, end: Termination) -> None:
         """Write how the run ended and give the file its name."""
-        self._write_rows()
+        self._write_kept()
         for pictures in self._pictures:
             pictures.on_terminate(end.t_ns)
         self._file.metadata("end", with_checksum({"reason": end.reason, "t_ns": end.t_ns}))
         self._file.close()
 
-    def _write_rows(self) -> None:
+    def _write_kept(self) -> None:
         if self._count:
-            for channel in self._channels:
-                channel.write(self._times[: self._count], self._rows[: self._count])
+            self._write_rows(self._times[: self._count], self._rows[: self._count])
         self._count = 0
+        self._file.flush()
+
+    def _write_rows(self, t_ns: Times, rows: Array) -> None:
+        for channel in self._channels:
+            channel.write(t_ns, rows)
         self._file.flush()
 
     def _write_parameters(self, instance: FmuInstance) -> None:
@@ -162,7 +172,7 @@ class _Pictures:
         self._controller_outputs = outputs.get("controller", slice(0, 0))
         around = vehicle_parameters(scenario, _values_by_name(named["vehicle"].parameters))
         self._car = CarOutline.of(around)
-        self._frames = scene.Frames(self._car)
+        self._frames = scene.Frames(self._car, HEADER_SIZE)
         self._transforms = file.add_channel("/tf", FrameTransforms)
         self._scene = file.add_channel("/scene", SceneUpdate)
         self._path = file.add_channel("/path", SceneUpdate)
@@ -171,6 +181,7 @@ class _Pictures:
         self._trail_count, self._trail_stride = 0, 1
         self._last_period = -1
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
+        self._path_columns = self._controller_outputs.start + self._path_places
         self._path_values: Array | None = None
         """Latest outputs that the planned path is made of."""
         self._stage = scene.Surroundings.of(scenario, around)
@@ -183,7 +194,7 @@ class _Pictures:
         self._last_period = int(periods[-1])
         if not len(due):
             return
-        times, values = t_ns[due], rows[due]
+        times, values = t_ns[due], rows.take(due, axis=0)
         drawn = np.zeros((len(due), len(self._drawn)))
         known = [place for place, column in enumerate(self._drawn) if column is not None]
         drawn[:, known] = values[:, [column for column in self._drawn if column is not None]]
@@ -224,15 +235,14 @@ class _Pictures:
         """Draw the planned path wherever it changes."""
         if self._controller is None:
             return
-        outputs = rows[:, self._controller_outputs]
-        ports = self._controller.outputs
+        first, ports = self._controller_outputs.start, self._controller.outputs
         road = ports.index.get(ON_ROAD)
-        on_road = outputs[:, road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
-        values = np.column_stack([outputs[:, self._path_places], on_road])
+        on_road = rows[:, first + road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
+        values = np.column_stack([rows.take(self._path_columns, axis=1), on_road])
         changes = find_changes(values, self._path_values)
         self._path_values = values[-1]
         for row in changes.tolist():
-            named = dict(zip(ports.names, outputs[row].tolist(), strict=True))
+            named = dict(zip(ports.names, rows[row, self._controller_outputs].tolist(), strict=True))
             points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
             update = scene.path_update(int(t_ns[row]), points)
             self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))

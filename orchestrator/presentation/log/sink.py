@@ -24,7 +24,7 @@ class Sink(Protocol):
         """Take one message."""
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
-        """Take messages of equal size, one per row."""
+        """Take messages of equal size, one per row, behind room for its header (``mcap_file.HEADER_SIZE`` bytes)."""
 
     def flush(self) -> None:
         """Hand on what is still in hand."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from fmus.installation import missing_package
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.presentation.log.mcap_file import HEADER_SIZE
 from orchestrator.session.stream.gate import Gate, hidden_host
 from orchestrator.session.stream.tuning import Tuning
 
@@ -82,8 +83,8 @@ class LiveChannels:
         to.log(data, log_time=t_ns)
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
-        """Send messages of equal size, one per row."""
-        for t, row in zip(t_ns.tolist(), rows, strict=True):
+        """Send messages of equal size, one per row, behind room for its header in a file."""
+        for t, row in zip(t_ns.tolist(), rows[:, HEADER_SIZE:], strict=True):
             self._channels[channel].log(row.tobytes(), log_time=t)
 
     def flush(self) -> None:

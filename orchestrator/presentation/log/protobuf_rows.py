@@ -26,7 +26,7 @@ CONTINUATION_BITS = 0x80808080
 LOW_BITS = np.array([0x7F, 0x7F, 0x7F, 0x7F, 0x0F], dtype=np.int64)
 
 
-class Run(NamedTuple):
+class ValueRun(NamedTuple):
     """Values of one kind at equal distances in a message."""
 
     numbers: slice
@@ -125,22 +125,22 @@ class Encoder:
         self._offsets.append((place, start))
         return bytes(WIDTHS[self._kinds[place]])
 
-    def _fields(self, kind: str) -> tuple[NDArray[np.intp], list[Run]]:
+    def _fields(self, kind: str) -> tuple[NDArray[np.intp], list[ValueRun]]:
         chosen = [(place, offset) for place, offset in self._offsets if self._kinds[place] == kind]
         places = np.array([place for place, _ in chosen], dtype=np.intp)
         return places, _runs([offset for _, offset in chosen])
 
 
-def _runs(offsets: list[int]) -> list[Run]:
+def _runs(offsets: list[int]) -> list[ValueRun]:
     """Return the numbers in ``offsets``, which rise, as runs of equal distance."""
-    runs: list[Run] = []
+    runs: list[ValueRun] = []
     begin = 0
     while begin < len(offsets):
         stride = offsets[begin + 1] - offsets[begin] if begin + 1 < len(offsets) else 0
         end = begin + 1
         while end < len(offsets) and offsets[end] - offsets[end - 1] == stride:
             end += 1
-        runs.append(Run(slice(begin, end), offsets[begin], stride))
+        runs.append(ValueRun(slice(begin, end), offsets[begin], stride))
         begin = end
     return runs
 
@@ -157,7 +157,7 @@ def _write_varints(views: list[tuple[slice, NDArray[Any]]], values: NDArray[np.i
         place[:, :, 4] = last[:, numbers]
 
 
-def _views(messages: NDArray[np.uint8], room: int, kind: str, runs: list[Run]) -> list[tuple[slice, NDArray[Any]]]:
+def _views(messages: NDArray[np.uint8], room: int, kind: str, runs: list[ValueRun]) -> list[tuple[slice, NDArray[Any]]]:
     """Return the values of each run in messages (n, room and bytes) as an array (n, count), an enum's (n, count, 5)."""
     size = messages.shape[1]
     found = []

@@ -1,7 +1,6 @@
 """What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.choice import OFFERED, ChosenTask
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import ApaSystemParams, Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
@@ -12,6 +11,7 @@ from controller_fmu.apa.system import ApaState, has_slot
 from controller_fmu.apa.ways.move import Piece
 from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, TURN
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
+from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenTask
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import PlannedPiece
 from modelkit.vocabulary import Pose, Prompt
@@ -135,7 +135,7 @@ def _offered(state: ApaState) -> tuple[OfferedSlot, ...]:
     if state.told.slot.kind > 0:
         return (_offer(state.told.slot), OfferedSlot(), OfferedSlot())
     if state.mode not in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
-        return (OfferedSlot(),) * OFFERED
+        return (OfferedSlot(),) * MAX_OFFERS
     slots = state.search.slots
     return (_offer(slots[0]), _offer(slots[1]), _offer(slots[2]))
 

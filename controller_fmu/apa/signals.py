@@ -4,9 +4,9 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.choice import OFFERED, DriverSelection
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.slot import Kind, Side, Slot
+from controller_fmu.common.driver_selection import MAX_OFFERS, DriverSelection
 from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import (
     STATE_OF_THE_CHART,
@@ -95,8 +95,8 @@ class ApaSignals(NamedTuple):
     mode: Annotated[int, Signal("1", "state of the outer chart", states=Mode)] = 0
     alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = 0
     confirm: Annotated[bool, Signal("1", "the display asks to confirm the slot")] = False
-    offered: tuple[OfferedSlot, ...] = (OfferedSlot(),) * OFFERED
-    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, OFFERED)] = 0
+    offered: tuple[OfferedSlot, ...] = (OfferedSlot(),) * MAX_OFFERS
+    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
     family: Annotated[int, Signal("1", "planner that the move being driven is from", states=Family)] = Family.NONE
     slots: Annotated[int, Signal("1", "valid slots remembered"), Role.LOCAL] = 0
     missing: Annotated[float, Signal("m", "length that the last refused slot lacks", 0.0), Role.LOCAL] = 0.0

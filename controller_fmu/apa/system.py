@@ -11,7 +11,6 @@ from controller_fmu.apa.around.row import driven_on, slot_of_map
 from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.deaf import without_deaf
 from controller_fmu.apa.hearing.mute import spared, usable
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
@@ -35,6 +34,7 @@ from controller_fmu.apa.slot import Kind, Slot
 from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
+from controller_fmu.common.driver_selection import ChosenTask
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.sensors import RangeSample, update_sample

@@ -29,6 +29,17 @@ class ParkingState(IntEnum):
     TAKEOVER = 10
 
 
+class Strategy(IntEnum):
+    """What the system does with the vehicle."""
+
+    SLOT = 0
+    """Into a slot that it searches, or that is given from outside."""
+    POSE = 1
+    """To a goal that is known, among the polygons of a map."""
+    PULL_OUT = 2
+    """Out of the slot in which the vehicle stands."""
+
+
 class Condition(IntEnum):
     """Conditions evaluated at every sample, one bit each."""
 
@@ -41,7 +52,7 @@ class Condition(IntEnum):
     SLOT_REJECTED = 5
     """No path into the slot shown."""
     DRIVEN_ON = 6
-    """The driver drove on instead of confirming."""
+    """The driver drove on instead of confirming, or chose another slot."""
     CONFIRMED = 7
     PLANNED = 8
     WHEEL_TURNED = 9
@@ -60,6 +71,8 @@ class Condition(IntEnum):
     """Wheel straight, not at the goal."""
     NO_NEARER = 16
     """Standing in the slot, and no path leads nearer to the goal."""
+    GOAL_KNOWN = 17
+    """No slot is searched: the vehicle sets out at once."""
 
 
 def _row(source: ParkingState, condition: Condition, target: ParkingState) -> TransitionRow:
@@ -75,6 +88,7 @@ def _aborts(source: ParkingState) -> tuple[TransitionRow, TransitionRow, Transit
 
 
 TRANSITIONS: tuple[TransitionRow, ...] = (
+    _row(ParkingState.STANDBY, Condition.GOAL_KNOWN, ParkingState.PLANNING),
     _row(ParkingState.STANDBY, Condition.SWITCHED_ON, ParkingState.SEARCHING),
     _row(ParkingState.SEARCHING, Condition.SWITCHED_OFF, ParkingState.STANDBY),
     _row(ParkingState.SEARCHING, Condition.FAULT, ParkingState.FAILED),

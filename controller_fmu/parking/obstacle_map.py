@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within
-from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
+from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
@@ -20,6 +20,7 @@ from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landm
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
 from modelkit.geometry import Point
+from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
 LANDMARK_VERTICES = 2 * LANDMARKS
@@ -47,6 +48,9 @@ class Quad(NamedTuple):
     x1: float = 0.0
     y1: float = 0.0
     is_used: bool = False
+    slope: float = 0.0
+    """A line beside an angled row: y at x0 and x1 is moved by this times the distance from ``pivot``."""
+    pivot: float = 0.0
 
 
 class KnownEchoes(NamedTuple):
@@ -80,14 +84,66 @@ def obstacle_map(
             _landmark_vertex(landmarks[number // 2 if number < LANDMARK_VERTICES else 0], number, mapping)
             if number < LANDMARK_VERTICES
             else _quad_vertex(quads, echoes, slot, number - LANDMARK_VERTICES)
+            if number < LOCAL_VERTICES
+            else Vertex()
             for number in range(VERTICES)
         )
     )
 
 
+def with_known_map(obstacles: ObstacleMap, known: tuple[Vertex, ...]) -> ObstacleMap:
+    """Return an obstacle map with the polygons of a map that is given behind its own."""
+    vertices = obstacles.vertices
+    return ObstacleMap(
+        tuple(
+            _numbered_on(known[max(number - LOCAL_VERTICES, 0)]) if number >= LOCAL_VERTICES else vertices[number]
+            for number in range(VERTICES)
+        ),
+        VERTICES,
+    )
+
+
+def _numbered_on(vertex: Vertex) -> Vertex:
+    """Return a vertex of a given map with a number that no other polygon has."""
+    return vertex._replace(polygon=vertex.polygon + LOCAL_VERTICES) if vertex.polygon > 0 else Vertex()
+
+
+def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -> bool:
+    """Return whether both ends of a landmark lie within ``tolerance`` [m] of an edge of a map that is given."""
+    for point in (start_point(landmark), end_point(landmark)):
+        is_near = False
+        first = 0
+        for number in range(MAP_VERTICES):
+            if known[number].polygon > 0:
+                if number > 0 and known[number - 1].polygon != known[number].polygon:
+                    first = number
+                last = (
+                    number + 1 >= MAP_VERTICES
+                    or known[min(number + 1, MAP_VERTICES - 1)].polygon != known[number].polygon
+                )
+                after = first if last else number + 1
+                a = Point(known[number].x, known[number].y)
+                is_near = is_near or point_to_segment(point, a, Point(known[after].x, known[after].y)) < tolerance
+        if not is_near:
+            return False
+    return True
+
+
+def point_to_segment(point: Point, a: Point, b: Point) -> float:
+    """Return the distance [m] of a point to the segment a-b."""
+    dx = b.x - a.x
+    dy = b.y - a.y
+    square = dx * dx + dy * dy
+    share = ((point.x - a.x) * dx + (point.y - a.y) * dy) / square if square > 0.0 else 0.0
+    share = clamp(share, 0.0, 1.0)
+    x = a.x + share * dx - point.x
+    y = a.y + share * dy - point.y
+    return math.sqrt(x * x + y * y)
+
+
 def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> Quad:
     """Return a rectangle without what the vehicle stands in: cut on the side on which the least is lost."""
-    if not quad.is_used:
+    if not quad.is_used or quad.slope != 0.0:
         return quad
     low = Point(min(quad.x0, quad.x1) - START_CLEARANCE, min(quad.y0, quad.y1) - START_CLEARANCE)
     high = Point(max(quad.x0, quad.x1) + START_CLEARANCE, max(quad.y0, quad.y1) + START_CLEARANCE)
@@ -165,7 +221,7 @@ def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandida
         if not quad.is_used:
             return Vertex()
         x = quad.x0 if corner == 0 or corner == 3 else quad.x1
-        y = quad.y0 if corner < 2 else quad.y1
+        y = (quad.y0 if corner < 2 else quad.y1) + slot.row.side * quad.slope * (x - quad.pivot)
         point = point_from_frame(x, slot.row.side * y, slot.row.frame)
         return Vertex(point.x, point.y, LANDMARKS + 1 + index)
     at = index - SLOT_QUADS
@@ -199,9 +255,9 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
         Quad(first, a.front, a.end, max(end, a.front + body), True),
         Quad(b.start, b.front, last, max(end, b.front + body), True),
         Quad(a.end, end, b.start, end, True),
-        Quad(first - ROW_EXTENSION, a.front, first, a.front, True),
-        Quad(last, b.front, last + ROW_EXTENSION, b.front, True),
-        Quad(first - ROW_EXTENSION, road.y, last + ROW_EXTENSION, road.y, True),
+        Quad(first - ROW_EXTENSION, a.front, first, a.front, True, slot.slope, a.end),
+        Quad(last, b.front, last + ROW_EXTENSION, b.front, True, slot.slope, b.start),
+        Quad(first - ROW_EXTENSION, road.y, last + ROW_EXTENSION, road.y, True, slot.slope, road.x),
         Quad(road.x, road.y, road.x, min(a.front, b.front), True),
     )
 

@@ -1,12 +1,13 @@
 """Outputs of the parking system, from what it remembers."""
 
+from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
-from controller_fmu.parking.slots.candidate import SlotType, row_point
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.state import ParkingMemory
 from modelkit.vocabulary import Prompt
 
@@ -84,12 +85,13 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
         is_blocked=memory.verdict.is_blocked,
         free_distance=memory.verdict.free_distance,
         goal=memory.plan.request.goal,
-        slot=_slot_signals(memory),
+        slot=_slot_signals(memory.search.slot),
+        offered=tuple(_slot_signals(memory.search.offered[number]) for number in range(MAX_OFFERS)),
+        shown=memory.search.shown,
     )
 
 
-def _slot_signals(memory: ParkingMemory) -> SlotSignals:
-    slot = memory.search.slot
+def _slot_signals(slot: SlotCandidate) -> SlotSignals:
     if slot.type == SlotType.NONE:
         return SlotSignals()
     a = row_point(slot.row, slot.behind.end, slot.front)

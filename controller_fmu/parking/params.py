@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.parking.following.params import FollowingParams
+from controller_fmu.parking.geometry.polygons import MAP_VERTICES, Vertex
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.params import SlotParams
@@ -24,7 +25,16 @@ class PlanningParams(NamedTuple):
     curvature_fraction: Annotated[float, Signal("1", "planned over largest curvature", 0.3, 1.0, HOUSE)] = 0.95
     steps_per_sample: Annotated[int, Signal("1", "steps of the search in one sample", 1, 1000, HOUSE)] = 10
     max_steps: Annotated[int, Signal("1", "steps after which the search gives up", 1, 1_000_000, HOUSE)] = 60_000
+    max_manoeuvres: Annotated[int, Signal("1", "most manoeuvres where no slot is searched", 1, 100, HOUSE)] = 30
     max_plans: Annotated[int, Signal("1", "most plans of one drive", 1, 100, HOUSE)] = 8
+
+
+class SlotSearchParams(NamedTuple):
+    """Where the vehicle is to go."""
+
+    active: Annotated[
+        bool, Signal("1", "searches slots while the driver drives past; else drives to a known goal at once")
+    ] = True
 
 
 class FinalPoseParams(NamedTuple):
@@ -51,9 +61,8 @@ class ParkingParams(NamedTuple):
     system: Annotated[int, Signal("1", "which system", states=ParkingSystem)] = ParkingSystem.PARKING
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
-    target: Annotated[Pose, Group("pose that the evaluation compares with; the system finds its own", ANYWHERE)] = (
-        Pose()
-    )
+    target: Annotated[Pose, Group("pose to park at where no slot is searched", ANYWHERE), Role.TUNABLE] = Pose()
+    search: SlotSearchParams = SlotSearchParams()
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
     limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(duration=300.0)
     mapping: Annotated[MappingParams, Role.TUNABLE] = MappingParams()
@@ -62,3 +71,8 @@ class ParkingParams(NamedTuple):
     drive: Annotated[FollowingParams, Role.TUNABLE] = FollowingParams()
     monitor: Annotated[MonitorParams, Role.TUNABLE] = MonitorParams()
     final: Annotated[FinalPoseParams, Role.TUNABLE] = FinalPoseParams()
+    map: Annotated[
+        tuple[Vertex, ...],
+        Role.TUNABLE,
+        Group("vertices of known polygons where no slot is searched", (("m", 1e8), ("1", 1e6))),
+    ] = (Vertex(),) * MAP_VERTICES

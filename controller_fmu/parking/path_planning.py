@@ -1,28 +1,31 @@
 """The planner in the system: a request from the slot as it is known now, continued a bounded amount at each sample."""
 
+from controller_fmu.common.external_slot import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
+from controller_fmu.parking.chart import Strategy
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import begin_path
 from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
+from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
-from controller_fmu.parking.monitor.collision_monitor import landmark_distance
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
     REMEMBERED,
     KnownEchoes,
     VehiclePlace,
     away_from_vehicle,
+    is_on_map,
     obstacle_map,
+    with_known_map,
     without_explained,
     without_inside,
 )
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
-    GOAL_BLOCKED,
-    PLANNED,
-    PLANNING,
-    TOO_MANY_EDGES,
+    PlanningStatus,
     continue_search,
     planned_path,
     search_status,
@@ -32,6 +35,7 @@ from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
+from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, least_depth, overhang_of
 from controller_fmu.parking.state import ParkingMemory
 from modelkit.maths import wrap_angle
@@ -57,19 +61,21 @@ def continue_plan(
     count = continue_search(work, plan.obstacles, plan.request, plan.steps, params.plan.steps_per_sample)
     memory = memory._replace(plan=plan._replace(steps=count))
     status = search_status(work)
-    if status == PLANNING and count <= params.plan.max_steps:
+    if status == PlanningStatus.PLANNING and count <= params.plan.max_steps:
         return memory
-    if status == PLANNED:
+    if status == PlanningStatus.PLANNED:
         path = without_short_end(planned_path(work))
         if path.margin >= params.plan.min_margin:
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
-    if status == GOAL_BLOCKED and not plan.is_relaxed:
+    relaxes = memory.strategy == Strategy.SLOT and not plan.is_relaxed
+    if status == PlanningStatus.GOAL_BLOCKED and relaxes:
         return memory._replace(plan=memory.plan._replace(is_relaxed=True, steps=0, plans=plan.plans - 1))
-    known = memory.perception.remembered[-1].is_present
-    reason = Reason.BLOCKED if known else Reason.NO_PATH
-    reason = Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason
+    is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED) and not relaxes
+    is_blocked = is_blocked or memory.perception.remembered[-1].is_present
+    reason = Reason.BLOCKED if is_blocked else Reason.NO_PATH
+    reason = Reason.BAD_PARAMETER if status == PlanningStatus.TOO_MANY_EDGES else reason
     return without_path(memory, reason, inputs, params)
 
 
@@ -77,12 +83,29 @@ def without_path(
     memory: ParkingMemory, reason: int, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ParkingMemory:
     """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
-    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    landmarks = without_driven_over(memory.perception.local_map.landmarks, inputs.odometry, outline)
-    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
-    if memory.progress.manoeuvres > 0 and stands_in_slot(slot, inputs.odometry, params):
+    if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, params):
         return memory._replace(plan=memory.plan._replace(is_final=True))
     return memory._replace(reason=reason)
+
+
+def is_acceptable(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> bool:
+    """Return whether a vehicle at ``pose`` has arrived, if not as finely as was meant."""
+    if memory.strategy != Strategy.SLOT:
+        return is_near(pose, memory.plan.request.goal, params.final.accepted, params.final.accepted_heading)
+    return stands_in_slot(slot_in_map(memory, pose, params), pose, params)
+
+
+def is_near(pose: Pose, goal: Pose, position: float, heading: float) -> bool:
+    """Return whether a pose is within ``position`` [m], along and across, and ``heading`` [rad] of a goal."""
+    error = pose_to_frame(pose, goal)
+    return abs(error.x) < position and abs(error.y) < position and abs(wrap_angle(error.heading)) < heading
+
+
+def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> SlotCandidate:
+    """Return the slot as the map has it now, seen by a vehicle at ``pose``."""
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
+    return correct_slot(memory.search.slot, landmarks, outline, params.mapping)
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
@@ -98,13 +121,11 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
     return near and abs(wrap_angle(error.heading)) < params.final.accepted_heading
 
 
-def max_cusps(slot: SlotCandidate, manoeuvres: int, params: ParkingParams) -> int:
-    """Return how often a path may change its direction after so many ``manoeuvres``.
-
-    GB/T 41630 allows one manoeuvre less in a perpendicular slot; to set out in reverse is one by itself.
-    """
-    allowed = params.limit.manoeuvres - (1 if slot.type == SlotType.PERPENDICULAR else 0)
-    return max(allowed - manoeuvres - 1, 0)
+def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:
+    """Return how many manoeuvres are allowed: GB/T 41630 has one less for a perpendicular slot."""
+    if memory.strategy != Strategy.SLOT:
+        return params.plan.max_manoeuvres
+    return params.limit.manoeuvres - (1 if memory.search.slot.type == SlotType.PERPENDICULAR else 0)
 
 
 def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -114,6 +135,8 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     local_map = memory.perception.local_map
     landmarks = without_driven_over(local_map.landmarks, pose, outline)
     memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
+    if memory.strategy == Strategy.POSE:
+        return _with_pose_request(memory, inputs, params)
     slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
     beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
@@ -130,15 +153,50 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     echoes = KnownEchoes(remembered, memory.perception.echoes)
     obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
     goal = goal_pose(slot, outline, params.slot)
-    cusps = max_cusps(slot, memory.progress.manoeuvres, params)
-    request = PlanningRequest(pose, goal, outline, params.plan.margin, cusps)
-    plans = memory.plan.plans + 1
-    plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
+    memory = _with_plan(memory, obstacles, goal, inputs, params)
     if slot.depth < least_depth(slot, outline, params.slot):
         memory = without_path(memory, Reason.SLOT_TOO_SHALLOW, inputs, params)
-    elif plans > params.plan.max_plans:
-        memory = without_path(memory, Reason.LEFT_PATH, inputs, params)
-    return memory._replace(plan=plan)
+    return memory
+
+
+def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with the request for a path to a known goal, among the known polygons and what is not there."""
+    pose = inputs.odometry
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    perception = memory.perception
+    landmarks = perception.local_map.landmarks
+    tolerance = params.monitor.unexplained
+    unknown = tuple(
+        Landmark() if is_on_map(landmarks[number], params.map, tolerance) else landmarks[number]
+        for number in range(LANDMARKS)
+    )
+    beside = tuple(away_from_vehicle(unknown[number], outline, pose) for number in range(LANDMARKS))
+    echoes = KnownEchoes(perception.remembered, (EchoObstacle(),) * SENSORS)
+    place = VehiclePlace(pose, Pose())
+    local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
+    goal = params.target
+    if inputs.external_slot.kind != SlotKind.NONE:
+        goal = external_pose(inputs.external_slot, outline, pose)
+    if not is_usable_slot(inputs.external_slot):
+        return memory._replace(reason=Reason.BAD_INPUT)
+    return _with_plan(memory, with_known_map(local, params.map), goal, inputs, params)
+
+
+def _with_plan(
+    memory: ParkingMemory, obstacles: ObstacleMap, goal: Pose, inputs: ParkingSystemInput, params: ParkingParams
+) -> ParkingMemory:
+    """Return the memory with a request for a path to ``goal``; the last plan but one was the last that is made.
+
+    A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself.
+    """
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
+    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps)
+    plan = memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
+    memory = memory._replace(plan=plan)
+    if plan.plans > params.plan.max_plans:
+        return without_path(memory, Reason.LEFT_PATH, inputs, params)
+    return memory
 
 
 def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: VehicleOutline) -> tuple[Landmark, ...]:

@@ -2,6 +2,8 @@
 
 import math
 
+from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenSide, DriverSelection
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.frames import point_to_frame
@@ -37,6 +39,7 @@ from controller_fmu.parking.objects.track import (
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
+from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 
@@ -45,6 +48,8 @@ MAX_MONITORED_RANGE = 1.5
 DISPLACED = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""
+SIDE_SENSOR = 8
+"""The front sensor of the left flank; that of the right one is as far ahead."""
 HALF_SENSOR_SPACING = 0.25
 """Half of the distance [m] of the two middle sensors of a bumper, at y = +-0.25 m (``modelkit.car``)."""
 MAX_REST = 0.3
@@ -168,8 +173,13 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     search = memory.search
     search = search._replace(distance=search.distance + abs(inputs.measured_speed) * dt_ns * 1e-9)
     if memory.perception.cycle.is_new:
-        search = _with_side(search, memory, 1.0, params)
-        search = _with_side(search, memory, -1.0, params)
+        if inputs.external_slot.kind != SlotKind.NONE:
+            search = _with_external(search, memory, inputs, params)
+        else:
+            search = _with_side(search, memory, 1.0, params)
+            search = _with_side(search, memory, -1.0, params)
+            number = chosen_number(search.offered, inputs.driver_selection)
+            search = search._replace(slot=search.offered[number - 1] if number > 0 else SlotCandidate(), shown=number)
     stands = abs(inputs.measured_speed) <= params.threshold.standstill
     waits = stands and search.slot.type == SlotType.NONE
     return memory._replace(search=search._replace(waited=search.waited + dt_ns if waits else 0))
@@ -177,8 +187,6 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
     """Return the search with the slot found on one side (1 left, -1 right), or why the one there is rejected."""
-    if search.slot.type != SlotType.NONE and search.slot.row.side != side:
-        return search
     local_map = memory.perception.local_map
     row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
@@ -190,18 +198,67 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
         return _without_slot(search, found)
     if is_same_gap(found, search.refused):
         return search
-    return search._replace(slot=found)
+    return search._replace(offered=with_offer(search.offered, found))
+
+
+def _with_external(
+    search: SearchProgress, memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams
+) -> SearchProgress:
+    """Return the search with the external slot, once the side sensors have passed it, or why it is rejected."""
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    given = inputs.external_slot
+    landmarks = memory.perception.local_map.landmarks
+    found = external_candidate(given, inputs.odometry, landmarks, outline, params.slot, params.mapping)
+    sensor_x = params.car.ultrasonic.mounts[SIDE_SENSOR].x
+    if found.type != SlotType.NONE and not has_passed_external(found, sensor_x, inputs.odometry):
+        return search
+    if found.reason != Reason.NONE:
+        return search._replace(slot=SlotCandidate(), rejected=found.reason)
+    return search._replace(slot=found, offered=with_offer((SlotCandidate(),) * MAX_OFFERS, found), shown=1)
+
+
+def with_offer(offered: tuple[SlotCandidate, ...], found: SlotCandidate) -> tuple[SlotCandidate, ...]:
+    """Return the slots that the driver may choose, the newest first; a better estimate replaces the one before."""
+    for number in range(MAX_OFFERS):
+        if is_overlapping(offered[number], found):
+            return tuple(found if place == number else offered[place] for place in range(MAX_OFFERS))
+    return (found,) + offered[: MAX_OFFERS - 1]
+
+
+def chosen_number(offered: tuple[SlotCandidate, ...], selection: DriverSelection) -> int:
+    """Return the number, from 1, of the slot that the driver means: the newest on the side chosen; 0: none."""
+    if selection.slot > 0:
+        slot = offered[min(selection.slot, MAX_OFFERS) - 1]
+        return selection.slot if selection.slot <= MAX_OFFERS and _is_meant(slot, selection.side) else 0
+    for number in range(MAX_OFFERS):
+        if _is_meant(offered[number], selection.side):
+            return number + 1
+    return 0
+
+
+def _is_meant(slot: SlotCandidate, side: int) -> bool:
+    """Return whether there is a slot, on the side of the road that the driver chose."""
+    if slot.type == SlotType.NONE:
+        return False
+    return side == ChosenSide.ANY or (side == ChosenSide.LEFT) == (slot.row.side > 0.0)
 
 
 def _without_slot(search: SearchProgress, found: SlotCandidate) -> SearchProgress:
-    """Return the search after a gap was rejected: if it overlaps the slot found before, that is none, either."""
-    slot = search.slot
-    if slot.type != SlotType.NONE:
-        middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
-        at = point_to_frame(middle.x, middle.y, found.row.frame)
-        if found.behind.end < at.x < found.ahead.start:
-            search = search._replace(slot=SlotCandidate())
-    return search._replace(rejected=found.reason)
+    """Return the search after a gap was rejected: a slot found before that overlaps it is none, either."""
+    offered = search.offered
+    offered = tuple(
+        SlotCandidate() if is_overlapping(offered[number], found) else offered[number] for number in range(MAX_OFFERS)
+    )
+    return search._replace(offered=offered, rejected=found.reason)
+
+
+def is_overlapping(slot: SlotCandidate, found: SlotCandidate) -> bool:
+    """Return whether the middle of a slot found before lies in a gap found now, on the same side of the road."""
+    if slot.type == SlotType.NONE or slot.row.side != found.row.side:
+        return False
+    middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
+    at = point_to_frame(middle.x, middle.y, found.row.frame)
+    return found.behind.end < at.x < found.ahead.start
 
 
 def is_same_gap(found: SlotCandidate, refused: SlotCandidate) -> bool:
@@ -220,8 +277,10 @@ def _has_passed(slot: SlotCandidate, params: ParkingParams) -> bool:
     return slot.ahead.start < params.car.wheelbase + params.car.front_overhang
 
 
-def search_reason(search: SearchProgress, params: ParkingParams) -> int:
-    """Return why a search ends without a slot, ``NONE`` while it goes on."""
+def search_reason(search: SearchProgress, is_external: bool, params: ParkingParams) -> int:
+    """Return why a search ends without a slot, ``NONE`` while it goes on; an external slot is the only one."""
+    if is_external and search.rejected != Reason.NONE:
+        return search.rejected
     if search.distance > params.slot.distance and search.slot.type == SlotType.NONE:
         return search.rejected if search.rejected != Reason.NONE else Reason.NO_SLOT
     return Reason.NOT_MOVING if seconds(search.waited) > params.slot.confirm_time else Reason.NONE

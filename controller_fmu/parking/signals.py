@@ -2,6 +2,8 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.driver_selection import MAX_OFFERS, DriverSelection
+from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import Odometry, Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.phases import ParkingPhase
@@ -9,9 +11,12 @@ from controller_fmu.parking.slots.candidate import SlotType
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
+    BrakePedal,
     BrakeRequest,
     DriverConfirm,
     DriverTakeover,
+    Gear,
+    GearShown,
     MeasuredSpeed,
     ParkingSwitch,
     Pose,
@@ -38,6 +43,10 @@ class ParkingSystemInput(NamedTuple):
     ] = (5.0,) * 12
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
+    gear: GearShown = Gear.PARK
+    brake_pedal: BrakePedal = 0.0
+    external_slot: Annotated[ExternalSlot, Group("a slot from outside: a camera, a map, a test bench")] = ExternalSlot()
+    driver_selection: Annotated[DriverSelection, Group("selection by the driver on the display")] = DriverSelection()
 
 
 class SlotSignals(NamedTuple):
@@ -66,6 +75,8 @@ class ParkingSignals(NamedTuple):
     free_distance: Annotated[float, Signal("m", "free along the motion in hand; 100: more than looked at")] = 100.0
     goal: Annotated[Pose, Group("pose to park at")] = Pose()
     slot: SlotSignals = SlotSignals()
+    offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
+    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
 
 
 class ParkingOutput(NamedTuple):

@@ -2,8 +2,9 @@
 
 from typing import NamedTuple
 
+from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.interface import Reason
-from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.chart import ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.local_map import LandmarkMap
@@ -30,6 +31,10 @@ class SearchProgress(NamedTuple):
     """Why the last candidate was not taken."""
     pose: Pose = Pose()
     """Where the slot was shown."""
+    offered: tuple[SlotCandidate, ...] = (SlotCandidate(),) * MAX_OFFERS
+    """Slots that the driver may choose, the newest first."""
+    shown: int = 0
+    """Number of the slot shown among those, from 1."""
     refused: SlotCandidate = SlotCandidate()
     """The last slot without a path."""
 
@@ -67,6 +72,7 @@ class ParkingMemory(NamedTuple):
     """The whole."""
 
     state: int = ParkingState.STANDBY
+    strategy: int = Strategy.SLOT
     reason: int = Reason.NONE
     perception: Perception = Perception()
     search: SearchProgress = SearchProgress()

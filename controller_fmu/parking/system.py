@@ -3,8 +3,10 @@
 import math
 
 from controller_fmu.common.chart import bit
+from controller_fmu.common.driver_selection import MAX_OFFERS
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
-from controller_fmu.parking.chart import Condition, ParkingState, next_parking_state
+from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import (
     is_at_end,
@@ -33,12 +35,19 @@ from controller_fmu.parking.monitor.fault_monitor import (
 )
 from controller_fmu.parking.obstacle_map import remember_echoes
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.path_planning import begin_plan, continue_plan, stands_in_slot, without_driven_over
-from controller_fmu.parking.perception import is_driving_state, perceive, planar_distance, search_reason, search_slots
+from controller_fmu.parking.path_planning import begin_plan, continue_plan, is_acceptable, max_manoeuvres, slot_in_map
+from controller_fmu.parking.perception import (
+    chosen_number,
+    is_driving_state,
+    is_same_gap,
+    perceive,
+    planar_distance,
+    search_reason,
+    search_slots,
+)
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotType
-from controller_fmu.parking.slots.correction import correct_slot
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
 from modelkit.maths import clamp, sign, wrap_angle
@@ -74,7 +83,8 @@ def parking_sample(
 def _search_fault(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
     """Return why the search must end, ``NONE`` if it goes on."""
     fault = input_fault(inputs)
-    return fault if fault != Reason.NONE else search_reason(memory.search, params)
+    is_external = inputs.external_slot.kind != SlotKind.NONE
+    return fault if fault != Reason.NONE else search_reason(memory.search, is_external, params)
 
 
 def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
@@ -90,11 +100,14 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     steers = state != ParkingState.PLANNING
     blocked = memory.verdict.is_blocked
     expectation = ExpectedMotion(steers, moves, drives, blocked, memory.steering_wheel_angle)
-    limits = FaultLimits(params.limit, params.car.steering.rate_limit, params.threshold.standstill)
+    limit = params.limit
+    if memory.strategy != Strategy.SLOT:
+        limit = limit._replace(manoeuvres=max_manoeuvres(memory, params))
+    limits = FaultLimits(limit, params.car.steering.rate_limit, params.threshold.standstill)
     clocks = advance_clocks(memory.clocks, expectation, inputs, limits, dt_ns)
     reason = memory.reason
     if reason == Reason.NONE:
-        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, params.limit)
+        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limit)
     return memory._replace(clocks=clocks, reason=reason)
 
 
@@ -131,8 +144,35 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
 
 def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
     """Return the bits of the conditions that hold."""
-    progress = memory.progress
+    return _driver_conditions(memory, inputs, params) | _motion_conditions(memory, inputs, params)
+
+
+def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
+    """Return the bits of what the driver does, and of what the search and the planner have found for the driver."""
     search = memory.search
+    standing = abs(inputs.measured_speed) <= params.threshold.standstill
+    moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
+    planned = memory.plan.is_found
+    searches = params.search.active
+    is_another = not search.slot.is_external and chosen_number(search.offered, inputs.driver_selection) != search.shown
+    return (
+        bit(Condition.GOAL_KNOWN, not searches)
+        | bit(Condition.SWITCHED_ON, inputs.apa_switch)
+        | bit(Condition.SWITCHED_OFF, searches and not inputs.apa_switch)
+        | bit(Condition.TAKEN_OVER, inputs.driver_takeover)
+        | bit(Condition.FAULT, memory.reason != Reason.NONE and memory.state != ParkingState.CONFIRMING)
+        | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
+        | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
+        | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON or is_another)
+        | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and planned)
+        | bit(Condition.PLANNED, planned)
+        | bit(Condition.NO_NEARER, memory.plan.is_final)
+    )
+
+
+def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
+    """Return the bits of how the vehicle moves on its path."""
+    progress = memory.progress
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
@@ -145,23 +185,10 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
     blocked_long = seconds(memory.clocks.blocked) > patience
-    moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
-    planned = memory.plan.is_found
     straightens = memory.state == ParkingState.STRAIGHTENING
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
-    off = not inputs.apa_switch
     return (
-        bit(Condition.SWITCHED_ON, inputs.apa_switch)
-        | bit(Condition.SWITCHED_OFF, off)
-        | bit(Condition.TAKEN_OVER, inputs.driver_takeover)
-        | bit(Condition.FAULT, memory.reason != Reason.NONE and memory.state != ParkingState.CONFIRMING)
-        | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
-        | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
-        | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON)
-        | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and planned)
-        | bit(Condition.PLANNED, planned)
-        | bit(Condition.NO_NEARER, memory.plan.is_final)
-        | bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
+        bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
         | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or blocked or lost)
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
         | bit(Condition.AT_END, standing and is_at_end(progress))
@@ -173,12 +200,13 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
-    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    landmarks = without_driven_over(memory.perception.local_map.landmarks, inputs.odometry, outline)
-    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
-    error = pose_to_frame(inputs.odometry, goal_pose(slot, outline, params.slot))
-    if memory.plan.is_final and stands_in_slot(slot, inputs.odometry, params):
+    if memory.plan.is_final and is_acceptable(memory, inputs.odometry, params):
         return True
+    goal = memory.plan.request.goal
+    if memory.strategy == Strategy.SLOT:
+        outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+        goal = goal_pose(slot_in_map(memory, inputs.odometry, params), outline, params.slot)
+    error = pose_to_frame(inputs.odometry, goal)
     near = abs(error.x) < params.final.position + abs(params.drive.rolling_offset)
     near = near and abs(error.y) < params.final.position
     return near and abs(wrap_angle(error.heading)) < params.final.heading
@@ -193,6 +221,8 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.CONFIRMING and before != ParkingState.CONFIRMING:
         search = memory.search._replace(pose=inputs.odometry, waited=0)
         memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
+    if state == ParkingState.PLANNING and before == ParkingState.STANDBY:
+        memory = memory._replace(strategy=Strategy.POSE)
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
         remembered = memory.perception.remembered
         if memory.verdict.is_blocked:
@@ -212,7 +242,14 @@ def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
     """Return the memory at the begin of a search; a slot that was shown is forgotten, the map is not."""
     if before == ParkingState.CONFIRMING:
         refused = memory.search.slot if memory.reason != Reason.NONE else memory.search.refused
-        search = SearchProgress(distance=memory.search.distance, rejected=memory.reason, refused=refused)
+        offered = memory.search.offered
+        offered = tuple(
+            SlotCandidate() if is_same_gap(offered[number], refused) else offered[number]
+            for number in range(MAX_OFFERS)
+        )
+        search = SearchProgress(
+            distance=memory.search.distance, rejected=memory.reason, refused=refused, offered=offered
+        )
         return memory._replace(search=search, reason=Reason.NONE, plan=PlanProgress())
     return ParkingMemory(state=memory.state, perception=Perception(time=memory.perception.time))
 

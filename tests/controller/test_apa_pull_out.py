@@ -7,7 +7,6 @@ from shapely.geometry import Polygon
 from shapely.geometry import box as rectangle
 
 from controller_fmu.apa.around.surroundings import shape_of
-from controller_fmu.apa.choice import ChosenSide, ChosenTask, DriverSelection
 from controller_fmu.apa.out.moves import CLEAR, TURNED
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.out.standing_in import STANDS_OUT, UNSURE, slot_around
@@ -15,6 +14,7 @@ from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Side, Site, Slot, site_of
 from controller_fmu.apa.ways.move import end_of, length_of, point_at
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch
+from controller_fmu.common.driver_selection import ChosenSide, ChosenTask, DriverSelection
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose

@@ -19,33 +19,31 @@ from orchestrator.session.drive import drive
 
 SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
-AS_MEANT = (
-    "apa-driver-drives",
-    "apa-no-slot",
-    "apa-not-confirmed",
-    "apa-parallel",
-    "apa-parallel-fast",
-    "apa-parallel-left",
-    "apa-parallel-real",
-    "apa-parallel-tight",
-    "apa-parallel-walls",
-    "apa-pedestrian-stays",
-    "apa-perpendicular",
-    "apa-perpendicular-left",
-    "apa-perpendicular-real",
-    "apa-perpendicular-tight",
-    "apa-search-too-fast",
-    "apa-slot-too-shallow",
-    "apa-switched-off",
-    "apa-takeover",
-    "apa-external-slot-occupied",
-    "cicap-bicycle",
-    "cicap-child",
-    "cicap-object-in-slot",
-    "valet-search-perpendicular",
-    "valet-external-slot-occupied",
+OTHERWISE = frozenset(
+    {
+        "apa-driver-brakes",
+        "apa-driver-grabs",
+        "apa-over-speed",
+        "apa-parallel-deep",
+        "apa-pedestrian",
+        "apa-perpendicular-walls",
+        "apa-pull-out",
+        "apa-pull-out-right",
+        "apa-resume",
+        "apa-sensor-loss",
+        "apa-slot-too-short",
+        "apa-switched-on-again",
+        "cicap-pillar",
+        "valet-search-45",
+        "valet-search-60",
+        "valet-switched-on-again",
+        "valet-external-slot",
+    }
 )
-"""Those that end as they are meant to; the others need what the system does not have yet, or go wrong."""
+"""Those that do not end as they are meant to: they need what the system does not have yet, or go wrong."""
+ENDS_DIFFERENTLY = {"apa-external-slot-nose-in": "parked"}
+"""What the system can do and `apa` cannot."""
+AS_MEANT = tuple(name for name in NAMES if name not in OTHERWISE)
 
 
 class Ended(NamedTuple):
@@ -66,16 +64,19 @@ def ended(name: str, folder: Path) -> Ended:
     update = {
         "controller": {**kept, "system": int(ParkingSystem.PARKING)},
         "requirements": [*library_requirements("valet-slot" if parked else "no-contact")],
-        "system": None,
     }
     scenario = scenario.model_copy(update=update)
     try:
+        if scenario.expected_outcome == "finished":
+            scenario = scenario.model_copy(update={"requirements": [*library_requirements("no-contact")]})
         ran = drive(scenario, "native", folder / f"{name}.mcap")
     except BadInput as error:
         return Ended(str(scenario.expected_outcome), "not possible", str(error), False)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     touched = bool(ran.recording.signals["vehicle.contact"].max() > 0)
-    return Ended(str(scenario.expected_outcome), str(summary.outcome), str(summary.reason), touched)
+    return Ended(
+        ENDS_DIFFERENTLY.get(name, str(scenario.expected_outcome)), str(summary.outcome), str(summary.reason), touched
+    )
 
 
 def is_as_meant(found: Ended) -> bool:
@@ -89,7 +90,7 @@ def test_it_ends_as_meant(name: str, tmp_path: Path) -> None:
 
 
 def test_the_list_names_shipped_scenarios() -> None:
-    assert set(AS_MEANT) <= set(NAMES)
+    assert set(NAMES) >= OTHERWISE
 
 
 def print_all() -> None:

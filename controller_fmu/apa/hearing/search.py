@@ -3,7 +3,6 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.choice import OFFERED, ChosenSide
 from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
 from controller_fmu.apa.hearing.search_side import hear
 from controller_fmu.apa.hearing.side import DEEP, START, WALL, SideState
@@ -12,6 +11,7 @@ from controller_fmu.apa.params import ApaParams, ApaSystemParams, Wish
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
+from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenSide
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, VALID_RANGE_FRACTION, sensor_at
 from modelkit.vocabulary import Pose
 
@@ -42,7 +42,7 @@ class SearchState(NamedTuple):
     far_left: float = DEEP
     way: float = 0.0
     """Driven since the search began [m]."""
-    slots: tuple[Slot, ...] = (Slot(),) * OFFERED
+    slots: tuple[Slot, ...] = (Slot(),) * MAX_OFFERS
     valid: int = 0
     """Valid slots remembered."""
     seen: int = 0
@@ -218,7 +218,7 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
     if not fit.fits:
         return state._replace(seen=seen, refused=fit, refusals=state.refusals + 1)
     slots = (slot, state.slots[0], state.slots[1])
-    return state._replace(slots=slots, valid=min(OFFERED, state.valid + 1), seen=seen)
+    return state._replace(slots=slots, valid=min(MAX_OFFERS, state.valid + 1), seen=seen)
 
 
 def _is_long(side: SideState, params: ApaParams) -> bool:
@@ -235,10 +235,10 @@ def is_on(slot: Slot, side: int) -> bool:
 def number_chosen(state: SearchState, side: int, number: int) -> int:
     """Return the number, from 1, of the slot remembered that is meant: of ``number``, or the newest; 0: none is."""
     if number > 0:
-        at = number - 1 if number <= OFFERED else 0
+        at = number - 1 if number <= MAX_OFFERS else 0
         return number if number <= state.valid and is_on(state.slots[at], side) else 0
     chosen = 0
-    for at in range(OFFERED):
+    for at in range(MAX_OFFERS):
         if chosen == 0 and at < state.valid and is_on(state.slots[at], side):
             chosen = at + 1
     return chosen
@@ -247,6 +247,6 @@ def number_chosen(state: SearchState, side: int, number: int) -> int:
 def without(state: SearchState, number: int) -> SearchState:
     """Return the search with one of its slots given up, counted from 1."""
     slots = (state.slots[1] if number <= 1 else state.slots[0], state.slots[2], Slot())
-    if number >= OFFERED:
+    if number >= MAX_OFFERS:
         slots = (state.slots[0], state.slots[1], Slot())
     return state._replace(slots=slots, valid=max(0, state.valid - 1), refusals=state.refusals + 1)

@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.near import nearest_told
-from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
+from controller_fmu.common.driver_selection import ChosenSide
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, VALID_RANGE_FRACTION
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose

@@ -1,23 +1,31 @@
 """Obstacles as polygons: what the planner keeps clear of, and what the sensors should measure among them."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-VERTICES = 256
-"""Capacity of an obstacle map: 64 landmarks of two vertices, 32 quadrilaterals about a slot."""
+from modelkit.signal import Signal
+
+LOCAL_VERTICES = 256
+"""64 landmarks of two vertices, 32 quadrilaterals about a slot."""
+MAP_VERTICES = 360
+"""Vertices of the polygons of a given map, as many as the valet has."""
+VERTICES = LOCAL_VERTICES + MAP_VERTICES
+"""Capacity of an obstacle map."""
 
 
 class Vertex(NamedTuple):
     """A vertex [m]; vertices in a row with the same number are one polygon, 0: unused."""
 
-    x: float = 0.0
-    y: float = 0.0
-    polygon: int = 0
+    x: Annotated[float, Signal("m", "x of the vertex")] = 0.0
+    y: Annotated[float, Signal("m", "y of the vertex")] = 0.0
+    polygon: Annotated[int, Signal("1", "vertices in a row with the same number are one polygon; 0: unused", 0)] = 0
 
 
 class ObstacleMap(NamedTuple):
     """Polygons, convex or not; one of two vertices is a line, one of a single vertex a point."""
 
     vertices: tuple[Vertex, ...] = (Vertex(),) * VERTICES
+    used: int = LOCAL_VERTICES
+    """Those behind are not; so many are where no map is given."""
 
 
 def next_index(obstacles: ObstacleMap, index: int, first: int) -> int:

@@ -9,7 +9,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, next_index
+from controller_fmu.parking.geometry.polygons import ObstacleMap, next_index
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from modelkit.geometry import NO_HIT, Point
 
@@ -112,7 +112,7 @@ def range_in_map(sensor: SensorPose, obstacles: ObstacleMap, max_range: float) -
         sensor.y + max_range * sensor.axis_y,
     )
     first = 0
-    for number in range(VERTICES):
+    for number in range(obstacles.used):
         a = obstacles.vertices[number]
         if a.polygon > 0:
             if number > 0 and obstacles.vertices[number - 1].polygon != a.polygon:

@@ -11,6 +11,7 @@ from controller_fmu.parking.planning.work import (
     EDGE_ITEMS,
     EDGES,
     NONE,
+    VERTEX_COUNT,
     PlanningWork,
     clear_cost_to_go,
     set_bucket,
@@ -21,6 +22,7 @@ from controller_fmu.parking.planning.work import (
     set_next_cell,
 )
 from modelkit.geometry import Point
+from modelkit.vocabulary import Pose
 
 HALF_DIAGONAL = 0.7072
 """Of a cell of side 1, rounded up."""
@@ -223,3 +225,48 @@ def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchR
     row = _cell(y - region.y0, region.cost_to_go_cell, region.cost_to_go_count)
     distance = work.cost_to_go[row * region.cost_to_go_count + column]
     return distance if distance >= 0.0 else UNREACHABLE
+
+
+def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
+    """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the search region."""
+    count = 0
+    for vertex in range(work.counts[VERTEX_COUNT]):
+        if work.corner_of[vertex] > 0:
+            after = next_corner(work, vertex)
+            count = add_edge(work, count, _seen_from(origin, work, vertex), _seen_from(origin, work, after), region)
+    return count
+
+
+def _seen_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:
+    return Point(work.corner_x[vertex] - origin.x, work.corner_y[vertex] - origin.y)
+
+
+def next_corner(work: PlanningWork, vertex: int) -> int:
+    """Return the vertex that an edge leads to from ``vertex``: the next one, or the first of the polygon."""
+    polygon = work.corner_of[vertex]
+    if vertex + 1 < work.counts[VERTEX_COUNT] and work.corner_of[vertex + 1] == polygon:
+        return vertex + 1
+    first = vertex
+    while first > 0 and work.corner_of[first - 1] == polygon:
+        first -= 1
+    return first
+
+
+def is_inside(work: PlanningWork, pose: Pose) -> bool:
+    """Return whether the rear axle's midpoint lies inside a polygon: a ray meets an odd count of its edges."""
+    odd = False
+    for vertex in range(work.counts[VERTEX_COUNT]):
+        if work.corner_of[vertex] > 0:
+            after = next_corner(work, vertex)
+            ay = work.corner_y[vertex] - pose.y
+            by = work.corner_y[after] - pose.y
+            if (ay > 0.0) != (by > 0.0):
+                ax = work.corner_x[vertex] - pose.x
+                bx = work.corner_x[after] - pose.x
+                if ax + ay / (ay - by) * (bx - ax) > 0.0:
+                    odd = not odd
+            if after <= vertex:
+                if odd:
+                    return True
+                odd = False
+    return False

@@ -4,19 +4,21 @@ What the work arrays hold after ``search_until`` follows from its arguments alon
 another request or of later steps, all is done anew from the first step.
 """
 
+from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap
+from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.planning.clearance_margin import measure_clearance
 from controller_fmu.parking.planning.collision import clearance
 from controller_fmu.parking.planning.grids import (
     UNREACHABLE,
+    add_edges,
     compute_cost_to_go,
     holonomic_cost_to_go,
     index_edges,
+    is_inside,
     mark_blocked_cells,
 )
-from controller_fmu.parking.planning.obstacle_edges import add_edges, is_inside
 from controller_fmu.parking.planning.problem import PlanningRequest, SearchProblem
 from controller_fmu.parking.planning.search import FOUND, SEARCHING, begin_search, expand_next
 from controller_fmu.parking.planning.search_schedule import (
@@ -44,6 +46,7 @@ from controller_fmu.parking.planning.work import (
     SEGMENT_COUNT,
     STAGE,
     STATUS,
+    VERTEX_COUNT,
     PlanningWork,
     set_best_segment,
     set_count,
@@ -53,21 +56,30 @@ from controller_fmu.parking.planning.work import (
     set_vertex,
 )
 
-LAY_OUT = 0
-BEGIN = 1
-SEARCH = 2
-SMOOTH = 3
-MEASURE_CLEARANCE = 4
-FINISHED = 5
 
-PLANNING = 0
-PLANNED = 1
-NO_PATH = 2
-START_BLOCKED = 3
-GOAL_BLOCKED = 4
-TOO_MANY_EDGES = 5
-MARGIN_TOO_SMALL = 6
-"""Free at start and goal, but with less than the least margin."""
+class PlanningPhase(IntEnum):
+    """What the next step of the planner does."""
+
+    LAY_OUT = 0
+    BEGIN = 1
+    SEARCH = 2
+    SMOOTH = 3
+    MEASURE_CLEARANCE = 4
+    FINISHED = 5
+
+
+class PlanningStatus(IntEnum):
+    """What has become of a request."""
+
+    PLANNING = 0
+    PLANNED = 1
+    NO_PATH = 2
+    START_BLOCKED = 3
+    GOAL_BLOCKED = 4
+    TOO_MANY_EDGES = 5
+    MARGIN_TOO_SMALL = 6
+    """Free at start and goal, but with less than the least margin."""
+
 
 MAX_SEGMENTS = 96
 
@@ -106,8 +118,8 @@ def continue_search(work: PlanningWork, obstacles: ObstacleMap, request: Plannin
     search_until(work, obstacles, request, count)
     for number in range(most):
         phase = work.counts[PHASE]
-        is_long = phase < SEARCH
-        if phase == FINISHED or (is_long and number > 0):
+        is_long = phase < PlanningPhase.SEARCH
+        if phase == PlanningPhase.FINISHED or (is_long and number > 0):
             return work.counts[COUNT]
         step(work, request)
         if is_long:
@@ -126,7 +138,9 @@ def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: Planning
     for which in range(REQUESTED):
         if work.requested[which] != numbers[which]:
             return False
-    for number in range(VERTICES):
+    if work.counts[VERTEX_COUNT] != obstacles.used:
+        return False
+    for number in range(obstacles.used):
         vertex = obstacles.vertices[number]
         if work.corner_of[number] != vertex.polygon:
             return False
@@ -140,13 +154,14 @@ def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) 
     numbers = _numbers(request)
     for which in range(REQUESTED):
         set_requested(work, which, numbers[which])
-    for number in range(VERTICES):
+    set_count(work, VERTEX_COUNT, obstacles.used)
+    for number in range(obstacles.used):
         vertex = obstacles.vertices[number]
         set_vertex(work, number, vertex.x, vertex.y, vertex.polygon)
     set_count(work, COUNT, 0)
-    set_count(work, PHASE, LAY_OUT)
+    set_count(work, PHASE, PlanningPhase.LAY_OUT)
     set_count(work, STAGE, 0)
-    set_count(work, STATUS, PLANNING)
+    set_count(work, STATUS, PlanningStatus.PLANNING)
     set_count(work, BEST_SEGMENT_COUNT, 0)
 
 
@@ -155,26 +170,26 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     set_count(work, COUNT, work.counts[COUNT] + 1)
     phase = work.counts[PHASE]
     problem = search_problem(work, request)
-    if phase == LAY_OUT:
+    if phase == PlanningPhase.LAY_OUT:
         _lay_out(work, request)
-    elif phase == BEGIN:
+    elif phase == PlanningPhase.BEGIN:
         _begin_stage(work, problem)
-    elif phase == SEARCH:
+    elif phase == PlanningPhase.SEARCH:
         status = expand_next(work, problem)
         if status == FOUND:
             begin_smoothing(work, problem)
-            set_count(work, PHASE, SMOOTH)
+            set_count(work, PHASE, PlanningPhase.SMOOTH)
         elif status != SEARCHING:
             _next_stage(work)
-    elif phase == SMOOTH:
+    elif phase == PlanningPhase.SMOOTH:
         more = smooth(work, problem)
         if not more:
             _keep_if_better(work, problem)
             _next_stage(work)
-    elif phase == MEASURE_CLEARANCE:
+    elif phase == PlanningPhase.MEASURE_CLEARANCE:
         more = measure_clearance(work, request, problem)
         if not more:
-            _finish(work, PLANNED)
+            _finish(work, PlanningStatus.PLANNED)
 
 
 def planned_path(work: PlanningWork) -> PlannedPath:
@@ -216,7 +231,7 @@ def _numbers(
 
 
 def _finish(work: PlanningWork, status: int) -> None:
-    set_count(work, PHASE, FINISHED)
+    set_count(work, PHASE, PlanningPhase.FINISHED)
     set_count(work, STATUS, status)
 
 
@@ -226,11 +241,11 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     edges = add_edges(work, request.goal, region)
     set_count(work, EDGE_COUNT, edges)
     if edges > EDGES:
-        _finish(work, TOO_MANY_EDGES)
+        _finish(work, PlanningStatus.TOO_MANY_EDGES)
         return
     fits = index_edges(work, edges, region, request.car)
     if not fits:
-        _finish(work, TOO_MANY_EDGES)
+        _finish(work, PlanningStatus.TOO_MANY_EDGES)
         return
     problem = search_problem(work, request)
     start = problem.target if problem.from_goal else problem.root
@@ -240,13 +255,13 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     set_value(work, MIN_END_CLEARANCE, at_start if at_start < at_goal else at_goal)
     set_count(work, GOAL_TIGHTER, 0 if at_start < at_goal else 1)
     if at_start <= 0.0:
-        _finish(work, START_BLOCKED)
+        _finish(work, PlanningStatus.START_BLOCKED)
     elif at_goal <= 0.0:
-        _finish(work, GOAL_BLOCKED)
+        _finish(work, PlanningStatus.GOAL_BLOCKED)
     elif work.values[MIN_END_CLEARANCE] < MIN_MARGIN + CLEARANCE_RESERVE:
-        _finish(work, MARGIN_TOO_SMALL)
+        _finish(work, PlanningStatus.MARGIN_TOO_SMALL)
     else:
-        set_count(work, PHASE, BEGIN)
+        set_count(work, PHASE, PlanningPhase.BEGIN)
 
 
 def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
@@ -257,7 +272,7 @@ def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
         _next_stage(work)
         return
     begin_search(work, problem)
-    set_count(work, PHASE, SEARCH)
+    set_count(work, PHASE, PlanningPhase.SEARCH)
 
 
 def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
@@ -299,9 +314,9 @@ def _next_stage(work: PlanningWork) -> None:
     last = stage >= len(SEARCH_SCHEDULE)
     if best and (last or not SEARCH_SCHEDULE[stage].always):
         set_count(work, MEASURED_SEGMENTS, 0)
-        set_count(work, PHASE, MEASURE_CLEARANCE)
+        set_count(work, PHASE, PlanningPhase.MEASURE_CLEARANCE)
     elif last:
-        _finish(work, NO_PATH)
+        _finish(work, PlanningStatus.NO_PATH)
     else:
         set_count(work, STAGE, stage)
-        set_count(work, PHASE, BEGIN)
+        set_count(work, PHASE, PlanningPhase.BEGIN)

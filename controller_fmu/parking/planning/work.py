@@ -105,6 +105,8 @@ EDGE_COUNT = 15
 BEST_SEGMENT_COUNT = 16
 BEST_STAGE = 17
 GOAL_TIGHTER = 18
+VERTEX_COUNT = 21
+"""Vertices of the obstacle map in use."""
 MEASURED_SEGMENTS = 20
 """Segments of the path kept about whose begin the room is known."""
 

@@ -70,6 +70,10 @@ class SlotCandidate(NamedTuple):
     """Behind that line."""
     bay: float = 0.0
     """Distance of two cars that stand perpendicular, from middle to middle [m]; 0: the row does not repeat."""
+    slope: float = 0.0
+    """Of the road against the frame's x axis: in an angled row the frame is square to the direction into the slot."""
+    is_nose_in: bool = False
+    is_external: bool = False
 
 
 def find_slot(

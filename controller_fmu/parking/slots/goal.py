@@ -32,7 +32,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
         flush = max(candidate.behind.end_front, candidate.ahead.start_front) - candidate.front
         deep = candidate.front + outline.half_length + min(flush, room)
-        heading = into_heading(candidate) + PI
+        heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)
     centre = row_point(candidate.row, middle, deep)
     ahead = outline.centre_ahead

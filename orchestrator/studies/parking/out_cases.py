@@ -9,8 +9,8 @@ import math
 import random
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.slot import Kind
+from controller_fmu.common.driver_selection import ChosenSide
 from modelkit.car import car_length
 from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.studies.parking.cases import BODY, CARS, KINDS

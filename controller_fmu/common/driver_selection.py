@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 
-OFFERED = 3
+MAX_OFFERS = 3
 """Slots that are remembered, and offered."""
 
 
@@ -30,4 +30,6 @@ class DriverSelection(NamedTuple):
 
     task: Annotated[int, Signal("1", "to park, or to pull out", states=ChosenTask)] = ChosenTask.PARK
     side: Annotated[int, Signal("1", "side of the road", states=ChosenSide)] = ChosenSide.ANY
-    slot: Annotated[int, Signal("1", "number of the slot among those offered, from 1; 0: the newest", 0, OFFERED)] = 0
+    slot: Annotated[
+        int, Signal("1", "number of the slot among those offered, from 1; 0: the newest", 0, MAX_OFFERS)
+    ] = 0

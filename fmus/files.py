@@ -114,10 +114,29 @@ def new_folder(name: str) -> Path:
 
 
 def remove_folder(folder: Path) -> None:
-    """Remove a folder, as far as that can be done."""
+    """Remove a folder, as far as that can be done, however deep it is."""
     import shutil
 
-    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        shutil.rmtree(folder, ignore_errors=True)
+    except RecursionError:  # a killed process may have left the folders of a hostile archive
+        with suppress(OSError):
+            _flatten(folder)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _flatten(folder: Path) -> None:
+    """Move all folders below a folder directly into it: paths stay short, whatever the depth was."""
+    number = 0
+    waiting = [entry.path for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False)]
+    while waiting:
+        outer = waiting.pop()
+        for entry in list(os.scandir(outer)):
+            if entry.is_dir(follow_symlinks=False):
+                number += 1
+                moved = str(folder / f"moved-{number}")
+                os.rename(entry.path, moved)
+                waiting.append(moved)
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """How a command ends: its code, its line, and what it leaves behind when it is asked to end or killed."""
 
+import inspect
 import os
 import signal
 import subprocess
@@ -231,3 +232,23 @@ def test_letters_that_a_terminal_has_not_cost_no_run(tmp_path: Path) -> None:
     done = subprocess.run([*command, "--out", str(tmp_path / "o")], capture_output=True, env=environment)
     assert done.returncode == 1
     assert b"Traceback" not in done.stderr
+
+
+def test_folders_nested_deeper_than_the_recursion_limit_are_removed(tmp_path: Path) -> None:
+    """As an archive of a hostile FMU leaves them when its test is killed."""
+    top = tmp_path / "left"
+    top.mkdir()
+    inner = os.open(top, os.O_RDONLY)
+    for _ in range(300):
+        os.mkdir("a", dir_fd=inner)
+        deeper = os.open("a", os.O_RDONLY, dir_fd=inner)
+        os.close(inner)
+        inner = deeper
+    os.close(inner)
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(len(inspect.stack(0)) + 200)
+    try:
+        files.remove_folder(top)
+    finally:
+        sys.setrecursionlimit(limit)
+    assert not top.exists()

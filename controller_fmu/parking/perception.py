@@ -32,8 +32,11 @@ from controller_fmu.parking.objects.track import (
     ObjectTrack,
     TrackStatus,
     closing_speed,
+    is_yielded_to,
     range_in_blind_zone,
+    static_approach,
     update_track,
+    with_approach,
     with_expectation,
 )
 from controller_fmu.parking.params import ParkingParams
@@ -43,6 +46,8 @@ from controller_fmu.parking.slots.external import external_candidate, has_passed
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 
+YIELD_TIME = 3.0
+"""The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
 MAX_MONITORED_RANGE = 1.5
 """Echoes farther [m] than this are left to later: twice the stopping distance from top speed with a slow brake."""
 DISPLACED = 0.06
@@ -65,6 +70,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     memory = memory._replace(perception=memory.perception._replace(cycle=cycle, time=time))
     if not cycle.is_new:
         return memory
+    memory = memory._replace(perception=memory.perception._replace(yields=max(memory.perception.yields - 1, 0)))
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(SENSORS))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
@@ -89,7 +95,11 @@ def _with_tracks(
     echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
     perception = perception._replace(local_map=perception.local_map._replace(landmarks=landmarks))
-    return perception._replace(tracks=tracks, echoes=echoes)
+    yields = perception.yields
+    for number in range(SENSORS):
+        if is_yielded_to(tracks[number]):
+            yields = math.floor(YIELD_TIME / params.car.ultrasonic.cycle)
+    return perception._replace(tracks=tracks, echoes=echoes, yields=yields)
 
 
 def _with_facing(
@@ -130,14 +140,18 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
     before = sensor_pose(sensors.mounts[number], sensors.half_angle, perception.pose)
     approach = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
-    is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE) and reading < MAX_MONITORED_RANGE
+    is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE)
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     before_track = perception.tracks[number]
     measured = reading
     if status == ReadingStatus.BLIND_ZONE and before_track.status != TrackStatus.NONE:
         measured = range_in_blind_zone(before_track, approach, reading)
     track = update_track(before_track, is_echo, measured, approach, variance, sensors.cycle)
-    if not is_echo:
+    static = static_approach(before, sensor)
+    stands = abs(inputs.measured_speed) <= params.threshold.standstill
+    if stands or before_track.unexplained > 0:
+        track = with_approach(before_track, track, static)
+    if not is_echo or measured >= MAX_MONITORED_RANGE:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
     planned = range_in_map(sensor, memory.plan.obstacles, sensors.max_range)
     expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
@@ -159,7 +173,7 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
         sensor.x + distance * ux,
         sensor.y + distance * uy,
         closing_speed(track),
-        track.confirmations > 0,
+        track.confirmations > 0 and track.range < MAX_MONITORED_RANGE,
         unknown,
         ux,
         uy,

@@ -66,6 +66,8 @@ class Perception(NamedTuple):
     remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * REMEMBERED
     pose: Pose = Pose()
     """At the last measurement cycle."""
+    yields: int = 0
+    """Measurement cycles for which the vehicle still stands for a moving object."""
 
 
 class ParkingMemory(NamedTuple):

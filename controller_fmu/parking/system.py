@@ -139,6 +139,8 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         params.monitor,
         params.mapping,
     )
+    if memory.perception.yields > 0:
+        verdict = verdict._replace(speed_limit=0.0, is_blocked=True, is_mapped=False)
     return memory._replace(progress=progress, verdict=verdict)
 
 

@@ -7,10 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
-from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
 from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point
+from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.monitor.collision_monitor import (
     UNLIMITED,
     EchoObstacle,
@@ -25,12 +27,15 @@ from controller_fmu.parking.objects.track import (
     ObjectTrack,
     TrackStatus,
     closing_speed,
+    is_yielded_to,
     range_in_blind_zone,
+    static_approach,
     update_track,
+    with_approach,
     with_expectation,
 )
 from controller_fmu.parking.obstacle_map import without_explained
-from modelkit.car import Car
+from modelkit.car import Car, SensorMount
 from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 1.0)
@@ -140,6 +145,42 @@ def test_what_came_into_the_blind_zone_comes_nearer_as_the_vehicle_does() -> Non
             reading = range_in_blind_zone(track, 0.01, reading)
         track = update_track(track, True, reading, 0.01, 1e-4, 0.04)
     assert track.range == pytest.approx(distance, abs=0.02)
+
+
+def tracked(readings: list[float], poses: list[Pose], mount: SensorMount) -> list[ObjectTrack]:
+    """Return the tracks of a sensor that measures ``readings`` [m] every 40 ms from a vehicle at ``poses``."""
+    track, tracks = ObjectTrack(), []
+    before = sensor_pose(mount, math.radians(30.0), poses[0])
+    for reading, pose in zip(readings, poses, strict=True):
+        sensor = sensor_pose(mount, math.radians(30.0), pose)
+        along = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
+        after = update_track(track, reading < 5.0, reading, along, 1e-4, 0.04)
+        track = with_approach(track, after, static_approach(before, sensor))
+        tracks.append(track)
+        before = sensor
+    return tracks
+
+
+FLANK = SensorMount(3.0, 0.9, math.pi / 2)
+
+
+def test_a_vehicle_yields_to_a_pedestrian_at_its_flank() -> None:
+    """He comes within 0.5 m at 1.2 m/s, and walks on along the flank, where no range changes."""
+    readings = [max(2.5 - 1.2 * 0.04 * n, 0.5) for n in range(60)]
+    yields = list(map(is_yielded_to, tracked(readings, [Pose()] * 60, FLANK)))
+    assert not any(yields[:10]), "he is far off"
+    assert yields[10 : readings.index(0.5) + 1].count(True) > 3
+    assert not any(map(is_yielded_to, tracked([0.5] * 60, [Pose()] * 60, FLANK))), "what has always stood there"
+
+
+@given(st.floats(-0.8, 0.8), st.floats(-0.2, 0.2), st.floats(0.3, 2.5), st.floats(-2.0, 6.0))
+def test_no_static_corner_counts_as_moving(speed: float, curvature: float, lateral: float, x: float) -> None:
+    poses = [pose_along_arc(Pose(), speed * 0.04 * n, curvature) for n in range(80)]
+    readings = []
+    for pose in poses:
+        sensor = sensor_pose(FLANK, math.radians(30.0), pose)
+        readings.append(min(predicted_range_to_point(sensor, x, 0.9 + lateral).distance, 5.0))
+    assert not any(map(is_yielded_to, tracked(readings, poses, FLANK)))
 
 
 def test_a_track_coasts_and_ends() -> None:

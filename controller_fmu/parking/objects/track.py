@@ -5,8 +5,11 @@ taken out first, so that v is the object's own. A track is tentative, confirmed 
 over ``MAX_COASTING`` missed ones and ends.
 """
 
+import math
 from enum import IntEnum
 from typing import NamedTuple
+
+from controller_fmu.parking.measurement.sensor import SensorPose
 
 ACCELERATION_DENSITY = 4.0
 """Spectral density [m2/s3] of a pedestrian's acceleration: 2 m/s2 within a quarter of a second."""
@@ -18,6 +21,12 @@ CONFIRMATIONS = 2
 """Echoes after which a track is confirmed: one alone may be noise."""
 MAX_COASTING = 4
 """Measurement cycles: 0.16 s."""
+MIN_APPROACH = 0.25
+"""Approach [m] that no motion of the vehicle explains and that shows a moving object: 8 sigma of 3 cm of noise."""
+TIME_TO_STAND = 1.5
+"""A moving object is yielded to from this time [s] before it arrives: the longest stop from top speed, and a half."""
+NEARBY = 1.0
+"""Within this range [m] a moving object is yielded to wherever it moves: a step or two."""
 
 
 class TrackStatus(IntEnum):
@@ -49,6 +58,8 @@ class ObjectTrack(NamedTuple):
     uy: float = 0.0
     is_side: bool = False
     """That is the inside of a side, not its end."""
+    approach: float = 0.0
+    """Approach [m] that no static object could cause: a cumulative sum, begun anew at 0 and above ``MIN_APPROACH``."""
 
 
 def update_track(
@@ -82,7 +93,33 @@ def update_track(
         confirmations,
         0,
         track.unexplained,
+        approach=track.approach,
     )
+
+
+def with_approach(before: ObjectTrack, after: ObjectTrack, static_approach: float) -> ObjectTrack:
+    """Return the track ``after`` a cycle with the sum of the approach beyond ``static_approach`` [m], the most that
+    the sensor's own motion can bring about; a track that has just begun starts a new sum."""
+    if after.confirmations < CONFIRMATIONS:
+        return after
+    summed = before.approach if before.approach <= MIN_APPROACH else 0.0
+    return after._replace(approach=max(0.0, summed + before.range - after.range - static_approach))
+
+
+def static_approach(before: SensorPose, after: SensorPose) -> float:
+    """Return by how much [m] a static object anywhere in the cone comes nearer at most as the sensor moves."""
+    dx = after.x - before.x
+    dy = after.y - before.y
+    along = dx * after.axis_x + dy * after.axis_y
+    across = abs(dy * after.axis_x - dx * after.axis_y)
+    if along > 0.0 and across * after.cone_cos <= along * after.cone_sin:
+        return math.sqrt(dx * dx + dy * dy)
+    return along * after.cone_cos + across * after.cone_sin
+
+
+def is_yielded_to(track: ObjectTrack) -> bool:
+    """Return whether the vehicle has to stand for a moving object: one close by, or one that arrives soon."""
+    return track.approach > MIN_APPROACH and (track.range < NEARBY or track.range < -track.rate * TIME_TO_STAND)
 
 
 def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: float) -> float:

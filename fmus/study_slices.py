@@ -2,35 +2,37 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from fmus.cache_paths import CACHE_FOLDER
-from fmus.compiler import live_inputs
-from fmus.compiler.slicing import Slice
 from fmus.locks import cache_file
-from fmus.native.made_of import ROOT, hash_of, words_of
-from fmus.native.sources import CACHED_TRANSLATIONS, own_packages
+from fmus.native.made_of import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
 from modelkit.connections import Wire, connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
+
+if TYPE_CHECKING:  # the translator takes a tenth of a second to import
+    from fmus.compiler.slicing import Slice
 
 
 class StudyCode(NamedTuple):
     """How the models of a study are compiled: which slice of each, with which options besides the usual."""
 
-    slices: Mapping[str, Slice]
+    slices: "Mapping[str, Slice]"
     """By the model's name in the study."""
     options: tuple[str, ...] = ()
 
 
 def study_slices(
     models: Mapping[str, Model], signals: Iterable[str], choices: Mapping[str, frozenset[int]]
-) -> dict[str, Slice]:
+) -> "dict[str, Slice]":
     """Return the slice of each model of which a study uses ``signals``, outputs and inputs such as ``vehicle.speed``.
 
     ``choices``: values of the parameter that chooses a system, of the models that have several. The result is kept in
     the cache for the project's own models. Raises ``Refused`` for a model that the translator refuses.
     """
+    from fmus.compiler.slicing import Slice
+
     used = frozenset(signals)
     packages = [own_packages(model) for model in models.values()]
     if None in packages:
@@ -48,7 +50,7 @@ def study_slices(
     return {name: Slice(frozenset(outputs), choices.get(name)) for name, outputs in kept.items()}
 
 
-def outputs_left_out(models: Mapping[str, Model], slices: Mapping[str, Slice]) -> dict[str, list[str]]:
+def outputs_left_out(models: Mapping[str, Model], slices: "Mapping[str, Slice]") -> dict[str, list[str]]:
     """Return, for each model, the names of the outputs that its slice does not compute."""
     return {
         name: [item.name for item in variables(model.outputs) if item.name not in slices[name].outputs]
@@ -58,8 +60,11 @@ def outputs_left_out(models: Mapping[str, Model], slices: Mapping[str, Slice]) -
 
 def _solve(
     models: Mapping[str, Model], used: frozenset[str], choices: Mapping[str, frozenset[int]]
-) -> dict[str, Slice]:
+) -> "dict[str, Slice]":
     """Return the least slices that are consistent: what a live input receives is a live output."""
+    from fmus.compiler import live_inputs
+    from fmus.compiler.slicing import Slice
+
     names = list(models)
     outputs = {name: {item.name for item in variables(models[name].outputs)} for name in names}
     live = {name: frozenset(found) & {item.removeprefix(f"{name}.") for item in used if item.startswith(f"{name}.")}

@@ -9,6 +9,14 @@ from modelkit.variables import flatten
 
 ROOT = Path(__file__).parents[2]
 SUFFIXES = (".py", ".c", ".h")
+CACHED_TRANSLATIONS = 4
+"""Translations of older sources that stay in the cache."""
+
+
+def own_packages(model: Model) -> list[Path] | None:
+    """Return the packages that ``model`` is made of if they are this project's own, else None."""
+    packages = [Path(str(package.__file__)).parent for package in model.sources()]
+    return None if any(package.parent != ROOT for package in packages) else packages
 
 
 def words_of(model: Model) -> list[str]:

@@ -11,7 +11,7 @@ from fmus.compiler.slicing import Slice
 from fmus.locks import cache_file
 from fmus.native.compilers import FLAGS
 from fmus.native.library_cache import C_FILES
-from fmus.native.made_of import ROOT, hash_of, words_of
+from fmus.native.made_of import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
 from fmus.native.tables import longest_name, runs_file, variables_file
 from modelkit.model import Model
 
@@ -36,8 +36,6 @@ STORE = """#define FMU_STORE(model) &(model)->store,
 """
 """In the unit of a model that has work arrays."""
 SUFFIX = ".c.json"
-CACHED_TRANSLATIONS = 4
-"""Translations of older sources that stay in the cache."""
 SHARED_FUNCTIONS = "-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"
 """For a shared library: its functions have no prefix."""
 PREFIX = {
@@ -68,12 +66,6 @@ def translate_model(model: Model, live: Slice | None = None) -> Translation:
     made = lambda: json.dumps(translate(model, live)._asdict()).encode()  # noqa: E731
     path = cache_file(CACHE_FOLDER, name, key, SUFFIX, made, CACHED_TRANSLATIONS)
     return Translation(**json.loads(path.read_bytes()))
-
-
-def own_packages(model: Model) -> list[Path] | None:
-    """Return the packages that ``model`` is made of if they are this project's own, else None."""
-    packages = [Path(str(package.__file__)).parent for package in model.sources()]
-    return None if any(package.parent != ROOT for package in packages) else packages
 
 
 def unit_name(model: Model, fmi: int) -> str:

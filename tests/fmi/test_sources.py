@@ -205,10 +205,10 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.Monkey
     other_start: Any = VEHICLE.step
     assert translated(other).name == "Other"
     assert translated(VEHICLE._replace(initialize=other_start)).header == "header 3"
-    for number in range(sources.CACHED_TRANSLATIONS):
+    for number in range(made_of.CACHED_TRANSLATIONS):
         monkeypatch.setattr(sources, "hash_of", lambda *_, n=number: str(n))
         translated(VEHICLE)
-    assert len(list(tmp_path.glob("Vehicle-*.json"))) == sources.CACHED_TRANSLATIONS
+    assert len(list(tmp_path.glob("Vehicle-*.json"))) == made_of.CACHED_TRANSLATIONS
     count = len(made)
     assert translated(toy_model.MODEL) != translated(toy_model.MODEL)
     assert len(made) == count + 2, "a model from elsewhere may be made of anything"

@@ -30,7 +30,7 @@ def charts_data() -> list[ChartData]:
 
 def charts_of_models(models: Sequence[Model]) -> list[ChartData]:
     """Return the charts of these models alone; other controllers are not imported."""
-    own = [chart for model in models for chart in model.all_charts()]
+    own = [chart for model in models for chart in model.all_charts() if chart.signal]
     known = _system_charts()
     if any(chart not in [item for _, item in known] for chart in own):
         known = [*known, *_standalone_charts()]

@@ -2,17 +2,20 @@
 
 import threading
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fmus.compiled_batch import Rows
-from fmus.compiler.slicing import Slice
 from fmus.study_slices import outputs_left_out
 from modelkit.model import Model
 from modelkit.variables import variables
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Times
+
+if TYPE_CHECKING:
+    from fmus.compiler.slicing import Slice
 
 STUDY_CODE_FROM = 5_000
 """Runs from which a study gets code of its own: it takes 4 s of processor time and saves 0.5 ms a run of case 4."""
@@ -59,7 +62,7 @@ class StudyRows:
         return rows[0].tobytes() == rows[1].tobytes()
 
 
-def explanation(models: Mapping[str, Model], slices: Mapping[str, Slice]) -> str:
+def explanation(models: Mapping[str, Model], slices: "Mapping[str, Slice]") -> str:
     """Return what the code of a study omits, a line for each model."""
     lines = []
     for name, omitted in outputs_left_out(models, slices).items():

@@ -18,6 +18,7 @@ from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.native import fmu as native_fmu
 from fmus.native import sources, tables
 from fmus.native.compilers import FLAGS, find_compiler
+from fmus.native.made_of import CACHED_TRANSLATIONS
 from fmus.native.platforms import PLATFORMS, host
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.variables import variables, with_values
@@ -205,10 +206,10 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.Monkey
     other_start: Any = VEHICLE.step
     assert translated(other).name == "Other"
     assert translated(VEHICLE._replace(initialize=other_start)).header == "header 3"
-    for number in range(made_of.CACHED_TRANSLATIONS):
+    for number in range(CACHED_TRANSLATIONS):
         monkeypatch.setattr(sources, "hash_of", lambda *_, n=number: str(n))
         translated(VEHICLE)
-    assert len(list(tmp_path.glob("Vehicle-*.json"))) == made_of.CACHED_TRANSLATIONS
+    assert len(list(tmp_path.glob("Vehicle-*.json"))) == CACHED_TRANSLATIONS
     count = len(made)
     assert translated(toy_model.MODEL) != translated(toy_model.MODEL)
     assert len(made) == count + 2, "a model from elsewhere may be made of anything"

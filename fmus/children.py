@@ -47,19 +47,24 @@ def run_child(command: Sequence[str], folder: Path | None = None, environment: M
 
 
 def own_process(
-    module: str, folder: Path | None = None, errors: Any = None, wrapper: Sequence[str] = ()
+    module: str,
+    folder: Path | None = None,
+    errors: Any = None,
+    wrapper: Sequence[str] = (),
+    inherited: Sequence[int] = (),
 ) -> "subprocess.Popen[bytes]":
     """Return a process that runs ``main()`` of a module of ours; it talks through its standard streams, in bytes.
 
     ``wrapper`` begins the command, as ``bwrap --``. What it writes as errors goes into a pipe too, unless a file is
-    named. Whoever asked for it puts it into ``LIVING`` and takes it out. Ctrl-C does not reach it.
+    named; it has the descriptors ``inherited``, too. Whoever asked for it puts it into ``LIVING`` and takes it out.
+    Ctrl-C does not reach it.
     """
     import subprocess
 
     pipe = subprocess.PIPE
     command = [*wrapper, PYTHON, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
     group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
-    streams: dict[str, Any] = {"stdin": pipe, "stdout": pipe, "stderr": errors or pipe}
+    streams: dict[str, Any] = {"stdin": pipe, "stdout": pipe, "stderr": errors or pipe, "pass_fds": inherited}
     return subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)
 
 

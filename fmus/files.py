@@ -114,29 +114,32 @@ def new_folder(name: str) -> Path:
 
 
 def remove_folder(folder: Path) -> None:
-    """Remove a folder, as far as that can be done, however deep it is."""
+    """Remove a folder, as far as that can be done, also one that is too deep for ``shutil``, or closed to its owner."""
     import shutil
 
-    try:
+    with suppress(RecursionError):
         shutil.rmtree(folder, ignore_errors=True)
-    except RecursionError:  # a killed process may have left the folders of a hostile archive
+    if folder.is_dir() and not folder.is_symlink():
         with suppress(OSError):
             _flatten(folder)
-        shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _flatten(folder: Path) -> None:
-    """Move all folders below a folder directly into it: paths stay short, whatever the depth was."""
-    number = 0
-    waiting = [entry.path for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False)]
+    """Empty every folder in ``folder``, and move those in them up into it."""
+    numbers = count()
+    waiting = [folder]
     while waiting:
-        outer = waiting.pop()
-        for entry in list(os.scandir(outer)):
-            if entry.is_dir(follow_symlinks=False):
-                number += 1
-                moved = str(folder / f"moved-{number}")
-                os.rename(entry.path, moved)
-                waiting.append(moved)
+        place = waiting.pop()
+        place.chmod(0o700)
+        for entry in list(os.scandir(place)):
+            if not entry.is_dir(follow_symlinks=False):
+                os.unlink(entry.path)
+                continue
+            above = folder / f"{MARK}{next(numbers)}"
+            os.chmod(entry.path, 0o700)
+            os.rename(entry.path, above)
+            waiting.append(above)
 
 
 @contextmanager

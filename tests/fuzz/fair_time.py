@@ -12,7 +12,8 @@ Threads = dict[str, tuple[float, float]]
 class FairTime:
     """Watches a process and its children from now on, also when it is gone; ask some times a second.
 
-    Of a stretch between two questions what the thread that was kept waiting longest lost is left out; so an idle
+    What the thread that was kept waiting longest lost until a question is left out, also if that began before the
+    question before: the system reports a wait when it is over. So an idle
     machine, and a system that does not tell, give wall-clock time. Whoever computes has at least its processor time.
     """
 
@@ -22,7 +23,8 @@ class FairTime:
         self._began = self._threads()
         self._before = self._began
         self._computed = 0.0
-        self._own = 0.0
+        self._stretches: list[tuple[float, float]] = []
+        """From when, and how long of it was its own [s], oldest first: a wait is reported only when it is over."""
 
     def seconds(self) -> float:
         """Return the time that is its own [s]."""
@@ -31,9 +33,18 @@ class FairTime:
         for name, (run, waited) in threads.items():
             starved = max(starved, waited - self._before.get(name, (0.0, 0.0))[1])
             self._computed = max(self._computed, run - self._began.get(name, (0.0, 0.0))[0])
-        self._own += max(0.0, asked - self._asked - starved)
+        self._stretches.append((self._asked, asked - self._asked))
+        self._leave_out(asked - starved)
         self._asked, self._before = asked, threads
-        return max(self._own, self._computed)
+        return max(sum(own for _, own in self._stretches), self._computed)
+
+    def _leave_out(self, since: float) -> None:
+        """Count nothing as its own from then on."""
+        for place in range(len(self._stretches) - 1, -1, -1):
+            begin, own = self._stretches[place]
+            if begin + own <= since:
+                return
+            self._stretches[place] = begin, max(0.0, since - begin)
 
     def _threads(self) -> Threads:
         """Return the threads of all who belong to it, and remember who does: orphans are no longer found."""

@@ -112,7 +112,7 @@ def a_run(at: Stage, draw: random.Random) -> str:
     out = at.folder / "run"
     kind = draw.choice(("none", "python", "native"))
     sets = ["--set", f"vehicle.start.x={draw.choice((2.0, 2.05, 2.1))}"]
-    child = at.start("run", "guo2015-case4", *sets, "--fmus", kind, "--out", str(out))
+    child = at.start("run", "guo2015-case4", *sets, "--fmus", kind, "--force", "--out", str(out))
     wrong = ended(child, draw.uniform(0.2, 6.0), draw)
     return wrong or _mixed(out)
 
@@ -194,9 +194,8 @@ PLAYS: tuple[Callable[[Stage, random.Random], str], ...] = (a_run, a_run, a_swee
 def left(at: Stage) -> str:
     """Return what is left in the folder for temporary files after one more command."""
     wrong = at.finish("export", "csv", str(at.folder / "log"), "--out", str(at.folder / "log" / "x.csv"))
-    wrong = wrong or at.finish(
-        "run", "guo2015-case4", "--fmus", "python", "--no-page", "--out", str(at.folder / "last")
-    )
+    words = ["run", "guo2015-case4", "--fmus", "python", "--no-page", "--force", "--out", str(at.folder / "last")]
+    wrong = wrong or at.finish(*words)
     names = [path.name for path in (at.folder / "tmp").iterdir()]
     return wrong or (f"left: {names}" if names else "")
 

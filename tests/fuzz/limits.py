@@ -24,7 +24,8 @@ MOST_MEMORY = 1 << 30
 CODES = (0, 1, 2, 130)
 """Codes that an input may lead to; 3 is a mistake of ours."""
 
-
+SAID = ("apa: ", "FAIL  ", "not run  ")
+"""Begins what is said of bad input, by a command or of a scenario of a suite."""
 PROGRESS = re.compile(r": (\d+) of (\d+) runs")
 """What a study says while it goes on."""
 
@@ -71,7 +72,7 @@ def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
         mistake = f"code {code}: {said.strip()}"
     if not mistake and "Traceback" in said:
         mistake = said
-    if not mistake and code == 2 and "apa" not in said and "FAIL" not in out.getvalue():
+    if not mistake and code == 2 and not any(word in said + out.getvalue() for word in SAID):
         mistake = f"code 2 without a word: {said!r}"
     return Answer(code, out.getvalue(), said, time.monotonic() - begun, mistake)
 

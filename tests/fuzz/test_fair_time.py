@@ -47,6 +47,23 @@ def test_a_core_shared_with_others_is_half_the_time() -> None:
     assert own < 0.75 * wall
 
 
+def test_a_wait_is_left_out_when_it_is_reported_at_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Linux adds it to ``schedstat`` as the thread runs again."""
+    clock = iter(0.1 * tick for tick in range(1000))
+    monkeypatch.setattr("tests.fuzz.fair_time.time.monotonic", lambda: next(clock))
+    reported: Threads = {"1": (0.0, 0.0)}
+    monkeypatch.setattr(FairTime, "_threads", lambda _: dict(reported))
+    watch = FairTime(1)
+    for _ in range(50):
+        watch.seconds()
+    reported["1"] = (0.05, 4.0)
+    assert watch.seconds() == pytest.approx(1.1)
+    reported["1"], reported["2"] = (0.1, 4.0), (0.0, 2.0)
+    assert watch.seconds() == pytest.approx(1.1), "two waits at a time are one"
+    for _ in range(20):
+        assert watch.seconds() > 1.1
+
+
 def test_who_sleeps_takes_all_of_it() -> None:
     own, wall = taken(SLEEPS)
     assert own > 0.7 * wall

@@ -37,6 +37,7 @@ def test_a_file_that_broke_it_once_is_refused_in_a_line(file: Path, log: Path, t
     if file.stem != "run-date":
         assert answer.code == 2, answer
         assert answer.err.count("\n") == 1
+        assert len(answer.err) < 1000
 
 
 @pytest.mark.parametrize("line", SETTINGS)

@@ -1,6 +1,8 @@
 """A gallery of FMUs that crash, hang, leave, refuse or are no FMUs, each with the verdict it gets."""
 
+import re
 import stat
+import warnings
 import zipfile
 from collections.abc import Callable
 from itertools import pairwise
@@ -18,11 +20,23 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
   <ModelStructure><Outputs><Unknown index="2"/></Outputs></ModelStructure>
 </fmiModelDescription>
 """
+DESCRIPTION3 = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="Bad" instantiationToken="{guid}">
+  <CoSimulation modelIdentifier="bad"/>
+  <ModelVariables>
+    <Float64 name="u" valueReference="0" causality="input" start="0"/>
+    <Float64 name="y" valueReference="1" causality="output"/>
+  </ModelVariables>
+  <ModelStructure><Output valueReference="1"/></ModelStructure>
+</fmiModelDescription>
+"""
 BOMB = """<?xml version="1.0"?>
 <!DOCTYPE a [<!ENTITY a "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa">{entities}]>
 <fmiModelDescription fmiVersion="2.0" modelName="&z;" guid="1"/>
 """
 LATE = "took more than 3 s"
+PLAIN = DESCRIPTION.format(guid="good").partition("?>")[2]
+"""A description without its first line."""
 BEHAVES = {
     "load-crash": "bad crashed while loading (SIGSEGV)",
     "load-hang": f"bad {LATE} while loading, so it was ended",
@@ -47,11 +61,22 @@ BEHAVES = {
     "step-signal": "bad crashed in the step at 0.05 s (signal 40)",
     "step-escape": "bad failed at 0.05 s: \\x1b[2J\\x1b]0;yours\\x07\\x9b31m",
     "step-long": "xxx... (4194303 letters)",
+    "step-bytes": "{when} {0} %s%n%d pass  another",
+    "step-pipefile": "bad crashed in the step at 0.05 s (SIGABRT)",
     "step-child": f"bad {LATE} in the step at 0.05 s, so it was ended",
 }
 """What its GUID makes it do -> the verdict."""
-HARMLESS = ("step-print", "step-low", "step-flood", "terminate-crash", "terminate-hang", "free-exit")
+HARMLESS = (
+    *("step-print", "step-low", "step-flood", "step-huge", "step-thread", "step-threads", "get-truncate"),
+    *("terminate-crash", "terminate-hang", "free-exit"),
+)
 """What does no run any harm."""
+ALL_PLACES = ("load", "setup", "initialize", "start", "set", "get", "terminate", "free")
+AT_ALL_PLACES = (
+    *("crash", "hang", "deaf", "error", "negative", "pending", "threads", "thread", "twin", "escape", "null", "pipe"),
+    *("truncate", "unlink", "close"),
+)
+"""What is tried at each of these places; all else at the step."""
 
 
 def gallery(folder: Path) -> dict[Path, str]:
@@ -64,10 +89,19 @@ def gallery(folder: Path) -> dict[Path, str]:
     return found
 
 
-def behaving(folder: Path, guid: str) -> Path:
+def behaving(folder: Path, guid: str, version: int = 2) -> Path:
     """Return an FMU that does what ``guid`` says."""
-    path = folder / f"{guid.replace(' ', '-')}.fmu"
-    return c_fmu(path, THEIR / "bad.c", DESCRIPTION.format(guid=guid), "bad")
+    path = folder / f"{guid.replace(' ', '-')}{'' if version == 2 else '-3'}.fmu"
+    return c_fmu(path, THEIR / "bad.c", (DESCRIPTION if version == 2 else DESCRIPTION3).format(guid=guid), "bad")
+
+
+def all_behaviours() -> list[tuple[str, int]]:
+    """Return what each kind does, and the version of FMI."""
+    known = set(re.findall(r'strcmp\(rest, "([a-z ]+)"\)', (THEIR / "bad.c").read_text(encoding="utf-8")))
+    kinds = sorted(known - {"parent"})  # which stops this process, where no sandbox keeps it from that
+    at_steps = [(f"step-{kind}", version) for kind in kinds for version in (2, 3)]
+    elsewhere = [(f"{place}-{kind}", 2) for place in ALL_PLACES for kind in AT_ALL_PLACES]
+    return [("another guid", 2), ("another guid", 3), *at_steps, *elsewhere]
 
 
 def _with(change: Callable[[zipfile.ZipFile], None]) -> Callable[[Path], None]:
@@ -127,6 +161,108 @@ def _described(old: str, new: str) -> Callable[[Path], None]:
     return make
 
 
+def _same_name(archive: zipfile.ZipFile) -> None:
+    archive.writestr("resources", "a file")
+    archive.writestr("resources/inside", "in a folder of its name")
+
+
+def _twice(archive: zipfile.ZipFile) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        archive.writestr("modelDescription.xml", DESCRIPTION.format(guid="the other"))
+
+
+def _special(kind: int) -> Callable[[zipfile.ZipFile], None]:
+    def add(archive: zipfile.ZipFile) -> None:
+        entry = zipfile.ZipInfo("resources/special")
+        entry.external_attr = (kind | 0o666) << 16
+        archive.writestr(entry, "")
+
+    return add
+
+
+def _named(name: str, count: int = 1) -> Callable[[zipfile.ZipFile], None]:
+    def add(archive: zipfile.ZipFile) -> None:
+        for number in range(count):
+            archive.writestr(name.format(number=number), "x")
+
+    return add
+
+
+def _patched(*changes: tuple[bytes, int, bytes]) -> Callable[[Path], None]:
+    """Return what writes an FMU and then other bytes so far behind each place that begins with these."""
+
+    def make(path: Path) -> None:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("modelDescription.xml", DESCRIPTION.format(guid="good"))
+            archive.writestr("resources/a", "a text")
+        data = bytearray(path.read_bytes())
+        for mark, offset, new in changes:
+            at = data.find(mark)
+            while at >= 0:
+                data[at + offset : at + offset + len(new)] = new
+                at = data.find(mark, at + 4)
+        path.write_bytes(data)
+
+    return make
+
+
+def _written(text: str, encoding: str = "utf-8") -> Callable[[Path], None]:
+    """Return what writes an FMU whose description is this text."""
+
+    def make(path: Path) -> None:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("modelDescription.xml", text.encode(encoding))
+
+    return make
+
+
+def _content(data: bytes) -> Callable[[Path], None]:
+    def make(path: Path) -> None:
+        path.write_bytes(data)
+
+    return make
+
+
+LOCAL, CENTRAL = b"PK\3\4", b"PK\1\2"
+"""Begin the header of a file in an archive, and its line in the list at the end."""
+ODD_FILES: dict[str, Callable[[Path], None]] = {
+    "backslash": _with(_named("resources\\..\\..\\..\\evil.txt")),
+    "absolute": _with(_named("/tmp/apa-evil")),
+    "drive": _with(_named("C:/evil.txt")),
+    "dot": _with(_named("./resources/./x")),
+    "empty-name": _with(_named("")),
+    "zero-in-name": _with(_named("resources/a\0b")),
+    "control": _with(_named("resources/\33[2J\x9b31m")),
+    "device": _with(_special(stat.S_IFCHR)),
+    "fifo": _with(_special(stat.S_IFIFO)),
+    "socket": _with(_special(stat.S_IFSOCK)),
+    "described-twice": _with(_twice),
+    "same-name": _with(_same_name),
+    "long-name": _with(_named(f"resources/{'n' * 300}")),
+    "long-path": _with(_named(f"resources/{'n' * 200}" + f"/{'n' * 200}" * 30)),
+    "deep": _with(_named("resources/" + "d/" * 3000 + "x")),
+    "many-files": _with(_named("resources/{number}", 51_000)),
+    "encrypted": _patched((LOCAL, 6, b"\1\0"), (CENTRAL, 8, b"\1\0")),
+    "unknown-method": _patched((LOCAL, 8, b"\x63\0"), (CENTRAL, 10, b"\x63\0")),
+    "wrong-crc": _patched((LOCAL, 14, b"\1\2\3\4"), (CENTRAL, 16, b"\1\2\3\4")),
+    "negative-offset": _patched((CENTRAL, 42, b"\xff\xff\xff\x7f")),
+    "large-header": _patched((CENTRAL, 28, b"\xff\xff")),
+    "empty": _content(b""),
+    "text": _content(b"this is no archive"),
+    "external-entity": _written('<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/passwd">]>' + PLAIN.replace("Bad", "&b;")),
+    "external-dtd": _written('<!DOCTYPE a SYSTEM "file:///dev/zero">' + PLAIN),
+    "parameter-entity": _written('<!DOCTYPE a [<!ENTITY % b SYSTEM "file:///dev/zero"> %b;]>' + PLAIN),
+    "quadratic": _written(f'<!DOCTYPE a [<!ENTITY b "{"b" * 50_000}">]>' + PLAIN.replace("Bad", "&b;" * 50_000)),
+    "levels": _written("<a>" * 100_000 + "</a>" * 100_000),
+    "attributes": _written(PLAIN.replace("modelName", " ".join(f'a{k}="1"' for k in range(100_000)) + " modelName")),
+    "utf-16": _written('<?xml version="1.0" encoding="UTF-16"?>' + PLAIN, "utf-16"),
+    "utf-7": _written('<?xml version="1.0" encoding="UTF-7"?>' + PLAIN),
+    "another-root": _written("<html/>"),
+    "no-xml": _written("modelName: Bad"),
+    "nothing": _written(""),
+}
+"""Archives and descriptions that are odd or no FMU at all; none is written outside its folder, none opens a file."""
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
     "elsewhere": (_with(_elsewhere), "it has other64"),
     "no-library": (_with(_text), "bad cannot be loaded here"),

@@ -40,7 +40,7 @@ def alive() -> list[str]:
     for folder in Path("/proc").glob("[0-9]*"):
         try:
             words = (folder / "cmdline").read_bytes().split(b"\0")
-            if b"foreign.worker" in b" ".join(words) and (folder / "stat").read_text().split()[3] == str(os.getpid()):
+            if b"imported.worker" in b" ".join(words) and (folder / "stat").read_text().split()[3] == str(os.getpid()):
                 found.append(folder.name)
         except OSError:
             continue

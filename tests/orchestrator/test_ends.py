@@ -160,6 +160,22 @@ def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch: pytest.
 
 
 @posix
+def test_a_folder_too_deep_or_closed_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``shutil.rmtree`` ended in a RecursionError where an FMU had left so deep a folder."""
+    kept = tmp_path / "kept"
+    kept.write_text("kept")
+    monkeypatch.chdir(tmp_path)
+    for _ in range(1200):
+        os.mkdir("deep")
+        os.chdir("deep")
+        os.symlink(tmp_path, "link")
+        os.mkdir("closed", 0)
+    os.chdir(tmp_path)
+    files.remove_folder(tmp_path / "deep")
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+
+
+@posix
 @pytest.mark.parametrize(
     "words", [["export", "ros2", "RUN"], ["new", "controller", "mine"]], ids=["export ros2", "new controller"]
 )

@@ -1,11 +1,14 @@
 """What an FMU declares or takes without bounds: one line, exit code 2; and what a sandbox keeps from it."""
 
+import os
+import re
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from orchestrator.cli import main
 from orchestrator.inputs.text.console import console, printable_streams
@@ -17,9 +20,13 @@ from orchestrator.simulation.imported import worker
 from orchestrator.simulation.imported.remote_instance import answer_of
 from orchestrator.simulation.imported.sandbox import PROGRAM, sandbox_program
 from orchestrator.simulation.system.signal_matching import _places_to_compare
+from tests.fuzz.limits import ask
+from tests.fuzz.received import DESCRIPTIONS, ODD
 from tests.orchestrator import bad_fmus
 from tests.orchestrator.c_fmus import THEIR, c_fmu
-from tests.orchestrator.test_bad_fmus import scenario
+from tests.orchestrator.test_bad_fmus import alive, scenario
+
+ROOT = Path(__file__).parents[2]
 
 FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="Bad" instantiationToken="1">
@@ -206,3 +213,76 @@ def test_an_fmu_of_many_signals_is_compared_in_bounds(tmp_path: Path, capsys: py
     assert out.count("\n") < 5000
     assert len(_places_to_compare("y", {"x": 0, "y": 7}, 3)) == 4
     assert len(_places_to_compare("z", {"x": 0, "y": 7}, 3)) == 3
+
+
+@pytest.mark.release
+def test_every_kind_of_hostile_fmu_costs_its_own_scenario_alone(tmp_path: Path) -> None:
+    """What each does at each place, in one suite: no internal error, no hang, no line that we did not write."""
+    names, good = [], bad_fmus.behaving(tmp_path, "good")
+    for guid, version in bad_fmus.all_behaviours():
+        path = bad_fmus.behaving(tmp_path, guid, version)
+        names.append(path.stem)
+        scenario(tmp_path, path)
+    names.append(good.stem)
+    scenario(tmp_path, good)
+    assert len(set(names)) == len(names) > 136
+    files = [f"{name}.yaml" for name in names]
+    words = ["test", *files, "--fmus", "none", "--timeout", "10", "--run-timeout", "60", "-j", "2", "--trust"]
+    environment = {**os.environ, "EVIL": str(tmp_path / "evil"), "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "orchestrator", *words, "--out", "out"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, timeout=3000, check=False)
+    out, err = done.stdout.decode(), done.stderr.decode()
+    assert done.returncode == 2, (out + err)[-3000:]  # some cannot be loaded
+    for wrong in ("Traceback", "internal error", "Warning:"):
+        assert wrong not in out + err, [line for line in (out + err).splitlines() if wrong in line][:5]
+    assert not CONTROL.search((out + err).replace("\r", ""))
+    assert max(map(len, out.splitlines())) < 3000
+    verdicts = re.findall(r"^(?:pass|FAIL|not run)  (\S+)  \((\d+) of", out, re.MULTILINE)
+    assert [name for name, _ in verdicts] == names
+    assert f"pass  {good.stem}  " in out
+    assert not re.search(r"^pass  another", out, re.MULTILINE)
+    assert alive() == []
+    assert [path.name for path in tmp_path.iterdir() if "evil" in path.name] in ([], ["evil"])
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("name", bad_fmus.ODD_FILES)
+def test_every_odd_archive_is_a_line_or_an_fmu(name: str, tmp_path: Path) -> None:
+    inside = tmp_path / "a" / "b"
+    inside.mkdir(parents=True)
+    path = inside / "odd.fmu"
+    bad_fmus.ODD_FILES[name](path)
+    for words in (
+        ["fmu", "check", str(path), "--no-load"],
+        ["run", "guo2015-case4", "--controller", str(path), "--fmus", "none", "--out", str(inside / "out")],
+    ):
+        answer = ask(words, 60.0)
+        assert not answer.mistake, answer.mistake
+        assert answer.code in (1, 2)
+        said = [line for line in answer.err.splitlines() if "warning" not in line]
+        assert answer.code == 1 or len(said) == 1, answer.err
+        assert len("".join(said)) < 1000
+        assert not CONTROL.search(answer.err)
+        assert {path.name for path in tmp_path.iterdir()} == {"a"}
+        assert not Path("/tmp/apa-evil").exists()
+
+
+@pytest.mark.release
+def test_every_attribute_of_a_description_with_every_odd_value(tmp_path: Path) -> None:
+    """One at a time, of FMI 2.0 and 3.0; the fuzzer combines them."""
+    path, wrong = tmp_path / "odd.fmu", []
+    for text in DESCRIPTIONS:
+        root = etree.fromstring(text)
+        places = [(item, key) for item in root.iter() for key in sorted(item.attrib)]
+        for item, key in places:
+            before = item.get(key)
+            for value in ODD:
+                item.set(key, value)
+                with zipfile.ZipFile(path, "w") as archive:
+                    archive.writestr("modelDescription.xml", etree.tostring(root))
+                answer = ask(["fmu", "check", str(path), "--no-load"])
+                long = answer.code == 2 and (answer.err.count("\n") != 1 or len(answer.err) > 1000)
+                if answer.mistake or long or CONTROL.search(answer.out + answer.err):
+                    wrong.append((item.tag, key, value[:20], answer.mistake[-300:] or answer.err[:300]))
+            item.set(key, before or "")
+    assert wrong == []

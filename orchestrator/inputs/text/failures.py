@@ -99,7 +99,8 @@ def place_of(error: OSError) -> str:
     if error.errno in (errno.ENOTDIR, errno.EEXIST):
         above = next((item for item in (path, *path.parents) if item.is_file()), None)
         return f"{path}: cannot be made anew" if above is None else f"{above}: is a file, expected a folder"
-    return f"{path}: {text}"
+    place = format_value(str(path)) if error.errno == errno.ENAMETOOLONG else path
+    return f"{place}: {text}"
 
 
 def _has_folder() -> bool:

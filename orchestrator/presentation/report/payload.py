@@ -24,8 +24,9 @@ class Arrays:
         self.lengths: list[int] = []
 
     def add(self, values: Array) -> int:
-        """Return the number under which the page finds ``values`` (rounded to float32)."""
-        single = np.ascontiguousarray(values, dtype="<f4")
+        """Return the number under which the page finds ``values`` (rounded to float32, infinite beyond)."""
+        with np.errstate(over="ignore"):
+            single = np.ascontiguousarray(values, dtype="<f4")
         block = single.view(np.uint8).reshape(-1, 4).T.tobytes()
         if block not in self._places:
             self._places[block] = len(self._blocks)

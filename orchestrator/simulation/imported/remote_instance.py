@@ -5,7 +5,6 @@ a step: see ``worker``.
 """
 
 import json
-import mmap
 import os
 import secrets
 import select
@@ -17,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from math import isnan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -40,11 +39,14 @@ from orchestrator.simulation.imported import worker
 from orchestrator.simulation.imported.archive import binary, check_archive, unpack
 from orchestrator.simulation.imported.limits import FmuLimits
 from orchestrator.simulation.imported.sandbox import sandbox_command
+from orchestrator.simulation.imported.shared_numbers import SharedNumbers
 
 EXIT_TIMEOUT = 2.0
 """For a process to end that has nothing to say any more [s]."""
 POLL_INTERVAL = 0.05
 """Between two looks at the clock [s]."""
+MAX_PRINTED = 1 << 20
+"""What a process printed is forgotten beyond so much [bytes]."""
 WIDE = ("UInt32", "Int64", "UInt64", "Enumeration")
 """Types of FMI 3.0 that hold more than 32-bit integers."""
 ANSWERS = (worker.DONE, worker.REFUSED, worker.MESSAGE)
@@ -57,19 +59,6 @@ class _Groups(NamedTuple):
     order: Indices
     """Places in the ports, in the order of the groups."""
     groups: list[dict[str, Any]]
-
-
-class _Shared:
-    """The memory that both processes have: time and step, the inputs, the outputs."""
-
-    def __init__(self, path: Path, inputs: int, outputs: int) -> None:
-        path.write_bytes(bytes(worker.TIMES.size + 8 * (inputs + outputs)))
-        with path.open("r+b") as file:
-            self.memory = mmap.mmap(file.fileno(), 0)
-        numbers = np.frombuffer(self.memory)
-        self.inputs, self.outputs = numbers[2 : 2 + inputs], numbers[2 + inputs :]
-        self.ones = np.ones(outputs)
-        """Times the outputs, that is not-a-number if one of them is; and seldom else."""
 
 
 class RemoteInstance:
@@ -113,7 +102,7 @@ class RemoteInstance:
         self._t_ns = 0
         self._in, self._out = self._groups(self.inputs), self._groups(self.outputs)
         self._wide = self._wide_outputs()
-        self._shared: _Shared | None = None
+        self._shared: SharedNumbers | None = None
         self._seen = b""
 
     def initialize(self, stop_ns: int) -> None:
@@ -131,15 +120,18 @@ class RemoteInstance:
         except Exception as error:
             raise NotRunError(f"{self.path.name} cannot be unpacked: {error}") from error
         place = self._folder / "fmu" / library
-        self._process = _Process(place.parent, self._folder, self._limits)
+        self._shared = SharedNumbers(self._folder, len(self._in.order), len(self._out.order))
+        try:
+            self._process = _Process(place.parent, self._folder, self._limits, self._shared.descriptors)
+        finally:
+            self._shared.close_handle()
         resources = self._folder / "fmu" / "resources"
-        self._shared = _Shared(self._folder / "shared", len(self._in.order), len(self._out.order))
         asked = {
             "version": self._version,
             "library": str(place),
             "name": self.name,
             "guid": self.identity,
-            "shared": str(self._folder / "shared"),
+            "shared": self._shared.place,
             "resources": f"{resources}{os.sep}" if self._version == 3 else resources.as_uri(),
             "inputs": self._in.groups,
             "outputs": self._out.groups,
@@ -277,11 +269,16 @@ class _NoAnswerError(Exception):
 class _Process:
     """A worker, its pipes, and who watches the clock."""
 
-    def __init__(self, folder: Path, room: Path, limits: FmuLimits) -> None:
-        self._printed = room / "printed"
+    def __init__(self, folder: Path, room: Path, limits: FmuLimits, inherited: Sequence[int] = ()) -> None:
         wrapper = sandbox_command(room) if limits.is_sandboxed else []
-        with self._printed.open("wb") as output:
-            self._child = own_process("orchestrator.simulation.imported.worker", folder, output, wrapper)
+        self._printed = (room / "printed").open("a+b", buffering=0)
+        """Read by this handle alone: the FMU may put anything in the place of the file."""
+        module = "orchestrator.simulation.imported.worker"
+        try:
+            self._child = own_process(module, folder, self._printed, wrapper, inherited)
+        except BaseException:
+            self._printed.close()
+            raise
         LIVING.add(self._child)
         assert self._child.stdin is not None
         assert self._child.stdout is not None
@@ -334,6 +331,7 @@ class _Process:
             end(self._child)
             self._child.wait()
         self._pipes[1].close()
+        self._printed.close()
         LIVING.discard(self._child)
 
     def _waiting(self) -> Callable[[], None]:
@@ -352,6 +350,9 @@ class _Process:
 
     def _watch(self) -> None:
         while not self._over.wait(POLL_INTERVAL):
+            with suppress(OSError, ValueError):  # it may be closed by now
+                if os.fstat(self._printed.fileno()).st_size > MAX_PRINTED:
+                    self._printed.truncate(0)
             if time.monotonic() > self._deadline:
                 self._is_late = True
                 end(self._child)
@@ -395,14 +396,15 @@ def answer_of(letter: bytes, answer: bytes) -> tuple[str, int, str]:
     if not isinstance(said, list) or tuple(map(type, said)) != shape:
         raise worker.ForeignAnswerError
     what, status, text = said if letter == worker.REFUSED else ("", *said)
+    if letter == worker.REFUSED:
+        what, text = " ".join(what.splitlines()), " ".join(text.splitlines())
     return printable(what), status, printable(text)
 
 
-def _last_line(path: Path) -> str:
+def _last_line(file: BinaryIO) -> str:
     """Return the last line that a process printed, as far as people can read it."""
-    with path.open("rb") as file:
-        file.seek(max(0, path.stat().st_size - 2000))
-        lines = file.read(2000).decode(errors="replace").strip().splitlines()
+    file.seek(max(0, os.fstat(file.fileno()).st_size - 2000))
+    lines = file.read(2000).decode(errors="replace").strip().splitlines()
     return printable(lines[-1][:300]) if lines else ""
 
 

@@ -16,6 +16,7 @@ import mmap
 import os
 import struct
 import sys
+from _thread import allocate_lock
 from collections.abc import Callable
 from typing import Any
 
@@ -85,6 +86,10 @@ class Worker:
     def __init__(self, reading: int, writing: int) -> None:
         self._orders, self._writing = Stream(reading, MAX_ORDER), writing
         self._number = self._messages = 0
+        self._lock = allocate_lock()
+        self._is_answering = False
+        self._early: list[bytes] = []
+        """Messages from threads of the FMU between two orders: they go with the next one."""
         self._fmu: Any = None
         self._worst = 0
         self._last = ""
@@ -109,19 +114,32 @@ class Worker:
         }
         while True:
             try:
-                letter, self._number, data = self._orders.message()
+                letter, number, data = self._orders.message()
             except EOFError:
                 return
+            self._begin(number)
             try:
                 orders[letter](data)
-                send(self._writing, DONE, self._number, b"")
+                self._answer(DONE, b"")
             except fmi_calls.RefusedError as error:
                 self._worst = max(self._worst, error.status)
                 word = fmi_calls.WORDS.get(error.status, "")
-                answer = json.dumps([error.what, error.status, self._last or word]).encode()
-                send(self._writing, REFUSED, self._number, answer)
+                self._answer(REFUSED, json.dumps([error.what, error.status, self._last or word]).encode())
             if letter == CLOSE:
                 return
+
+    def _begin(self, number: int) -> None:
+        """Send the messages that came before this order: the other side reads none between two orders."""
+        with self._lock:
+            self._number, self._is_answering = number, True
+            for message in self._early:
+                send(self._writing, MESSAGE, number, message)
+            self._early.clear()
+
+    def _answer(self, letter: bytes, data: bytes) -> None:
+        with self._lock:
+            self._is_answering = False
+            send(self._writing, letter, self._number, data)
 
     def _load(self, data: bytes) -> None:
         asked = json.loads(data)
@@ -138,8 +156,8 @@ class Worker:
             raise fmi_calls.RefusedError("cannot be loaded here", fmi_calls.ERROR) from error
 
     def _share(self, asked: Any) -> None:
-        """Have the numbers' file in memory, and a call for each type of them, inputs first."""
-        with open(asked["shared"], "r+b") as file:
+        """Have the numbers' file, a path or a descriptor, in memory, and a call for each type of them, inputs first."""
+        with open(asked["shared"], "r+b", buffering=0) as file:
             self._shared = mmap.mmap(file.fileno(), 0)
         at = TIMES.size
         for verb, groups, transfers in (("Set", asked["inputs"], self._sets), ("Get", asked["outputs"], self._gets)):
@@ -197,12 +215,17 @@ class Worker:
         text = text if len(text) <= MAX_TEXT else f"{text[:MAX_TEXT]}... ({len(text)} letters)"
         if status > fmi_calls.WARNING:
             self._last = text
-        self._messages += 1
-        if self._messages > MAX_MESSAGES:
-            return
-        if self._messages == MAX_MESSAGES:
-            status, text = fmi_calls.WARNING, f"further messages are left out, as there are {MAX_MESSAGES} already"
-        send(self._writing, MESSAGE, self._number, json.dumps([int(status), text]).encode())
+        with self._lock:
+            self._messages += 1
+            if self._messages > MAX_MESSAGES:
+                return
+            if self._messages == MAX_MESSAGES:
+                status, text = fmi_calls.WARNING, f"further messages are left out, as there are {MAX_MESSAGES} already"
+            message = json.dumps([int(status), text]).encode()
+            if self._is_answering:
+                send(self._writing, MESSAGE, self._number, message)
+            else:
+                self._early.append(message)
 
 
 def _limit_memory(size: int) -> None:

@@ -19,6 +19,7 @@ from controller_fmu.parking.following.path_tracking import (
 from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
+from controller_fmu.parking.measurement.silent_sensor import silent_sensors
 from controller_fmu.parking.monitor.collision_monitor import (
     MonitorVerdict,
     VehicleMotion,
@@ -54,6 +55,8 @@ from modelkit.maths import clamp, sign, wrap_angle
 
 REPLAN_TIME = 0.3
 """Blocked by the map the vehicle plans again after this time [s]: seven measurement cycles at standstill."""
+MAX_SILENT_SENSORS = 2
+"""With more the surroundings are unknown on one side at least: a bumper has four sensors, a flank two."""
 DRIVEN_ON = 0.3
 """A vehicle that has moved by more than this [m] since the slot was shown was driven on by its driver."""
 
@@ -108,6 +111,8 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     reason = memory.reason
     if reason == Reason.NONE:
         reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limit)
+    if reason == Reason.NONE and silent_sensors(memory.perception.local_map.missed) > MAX_SILENT_SENSORS:
+        reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
 
 

@@ -21,6 +21,7 @@ from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.map.update import Gradient, line_gradient, update_landmark
+from controller_fmu.parking.measurement.silent_sensor import silent_sensors
 from modelkit.geometry import Box
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -155,14 +156,25 @@ def test_estimates_are_as_good_as_their_covariance_says() -> None:
 
 
 def test_a_wall_that_is_gone_is_forgotten() -> None:
-    wall = [Box(0.0, -1.0, 0.0, 30.0, 0.2)]
-    local_map, true, _ = map_after(wall, 1)
+    """Sensors that detect something else now and then work: what they miss is not there."""
+    local_map, true, _ = map_after([Box(0.0, -1.0, 0.0, 30.0, 0.2)], 1)
     assert sides(local_map)
-    empty = (CAR.ultrasonic.max_range,) * 12
     for number in range(200):
         pose = Pose(true.x - 0.1 * number, true.y, true.heading)
-        local_map = update_map(local_map, empty, pose, CAR.ultrasonic, PARAMS)
-    assert sum(length_of(item) for item in sides(local_map)) < 3.0
+        readings = (CAR.ultrasonic.max_range if number % 3 else 4.5,) * 12
+        local_map = update_map(local_map, readings, pose, CAR.ultrasonic, PARAMS)
+    assert sum(length_of(item) for item in sides(local_map) if abs(item.y - true.y) < 3.0) < 3.0
+    assert silent_sensors(local_map.missed) == 0
+
+
+def test_silent_sensors_forget_no_wall() -> None:
+    local_map, true, _ = map_after([Box(0.0, -1.0, 0.0, 30.0, 0.2)], 1)
+    before = sum(length_of(item) for item in sides(local_map))
+    for number in range(100):
+        pose = Pose(true.x - 0.1 * number, true.y, true.heading)
+        local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, pose, CAR.ultrasonic, PARAMS)
+    assert sum(length_of(item) for item in sides(local_map)) > before - 1.0
+    assert silent_sensors(local_map.missed) >= 2, "those of the flank that passes the wall"
 
 
 def test_what_is_in_the_blind_zone_is_kept() -> None:

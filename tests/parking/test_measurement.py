@@ -18,7 +18,13 @@ from controller_fmu.parking.measurement.predicted_range import (
     predicted_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose, reading_status, sensor_pose
-from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes, count_missed_echoes, is_silent
+from controller_fmu.parking.measurement.silent_sensor import (
+    MISSED_ECHOES,
+    MissedEchoes,
+    count_missed_echo,
+    is_credible_miss,
+    silent_sensors,
+)
 from modelkit.car import Car, SensorMount
 from modelkit.geometry import NO_HIT, Point, cone_line
 from modelkit.vocabulary import Pose
@@ -144,14 +150,13 @@ def test_a_jump_begins_a_new_window() -> None:
 
 def test_a_sensor_is_silent_after_enough_missed_echoes() -> None:
     missed = MissedEchoes()
-    statuses = tuple(ReadingStatus.NO_ECHO for _ in range(12))
-    expected = tuple(number == 3 for number in range(12))
-    for _ in range(MISSED_ECHOES):
-        assert not is_silent(missed, 3)
-        missed = count_missed_echoes(missed, statuses, expected)
-    assert [is_silent(missed, number) for number in range(12)] == list(expected)
-    heard = tuple(ReadingStatus.ECHO for _ in range(12))
-    assert not is_silent(count_missed_echoes(missed, heard, expected), 3)
+    for number in range(MISSED_ECHOES):
+        assert silent_sensors(missed) == 0
+        assert is_credible_miss(missed, 3) == (number < MISSED_ECHOES // 2)
+        missed = count_missed_echo(missed, 3, ReadingStatus.NO_ECHO, True)
+        missed = count_missed_echo(missed, 4, ReadingStatus.NO_ECHO, False)
+    assert silent_sensors(missed) == 1
+    assert silent_sensors(count_missed_echo(missed, 3, ReadingStatus.ECHO, False)) == 0
 
 
 def test_readings_are_new_once_a_cycle() -> None:

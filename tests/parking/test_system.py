@@ -7,6 +7,17 @@ from typing import Any
 import pytest
 import yaml
 
+from controller_fmu.interface import Reason
+from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.map.local_map import LandmarkMap
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.signals import ParkingSystemInput
+from controller_fmu.parking.state import ParkingMemory, Perception
+from controller_fmu.parking.system import parking_sample
+from modelkit.store import new_store
 from orchestrator.cli import main
 
 SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
@@ -40,3 +51,13 @@ def test_it_parks_in_the_empty_bay_of_a_car_park(tmp_path: Path) -> None:
         slot={"x": 1.8, "y": -2.3, "heading": math.pi / 2, "length": 4.6, "width": 3.6},
     )
     assert main(["test", file, "--fmus", "native", "--out", str(tmp_path / "out")]) == 0
+
+
+@pytest.mark.parametrize(("silent", "gives_up"), [(2, False), (3, True)])
+def test_it_gives_up_where_more_than_two_sensors_are_silent(silent: int, gives_up: bool) -> None:
+    missed = MissedEchoes(tuple(MISSED_ECHOES if number < silent else 0 for number in range(SENSORS)))
+    memory = ParkingMemory(state=ParkingState.DRIVING, perception=Perception(local_map=LandmarkMap(missed=missed)))
+    inputs = ParkingSystemInput(apa_switch=True, measured_speed=0.3)
+    after = parking_sample(new_store(PlanningWork), memory, inputs, ParkingParams(), 1_000_000)
+    assert (after.state == ParkingState.FAILED) == gives_up
+    assert after.reason == (Reason.SENSOR_LOSS if gives_up else Reason.NONE)

@@ -40,6 +40,7 @@ from controller_fmu.parking.measurement.sensor import (
     reading_status,
     sensor_pose,
 )
+from controller_fmu.parking.measurement.silent_sensor import MissedEchoes, count_missed_echo, is_credible_miss
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 
@@ -69,6 +70,7 @@ class LandmarkMap(NamedTuple):
     chains: tuple[EchoChain, ...] = (EchoChain(),) * SIDE_SENSORS
     """Of the sensors on the flanks."""
     free_space: FreeSpace = FreeSpace()
+    missed: MissedEchoes = MissedEchoes()
     pose: Pose = Pose()
     distance: float = 0.0
     """Driven since the map began [m]."""
@@ -104,8 +106,12 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
         local_map = _use_side(local_map, measurement, params)
     else:
         local_map = _use_bumper(local_map, measurement, params)
-    if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
+    if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = contradict_nearer(local_map, measurement, params)
+    else:
+        missed = count_missed_echo(local_map.missed, measurement.number, status, status == ReadingStatus.INVALID)
+        local_map = local_map._replace(missed=missed)
+    if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
     return local_map
 
@@ -181,8 +187,13 @@ def expected_range(
 
 
 def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
-    """Return the map with those landmarks contradicted that had to be detected before this echo, or at all."""
+    """Return the map with those landmarks contradicted that had to be detected before this echo, or at all.
+
+    A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more.
+    """
     sensor = measurement.sensor
+    is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
+    is_missed = False
     for number in range(LANDMARKS):
         landmark = local_map.landmarks[number]
         if is_in_reach(landmark, sensor, measurement.range + CONFIRMING_RANGE):
@@ -191,11 +202,14 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
             if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
-                after = contradict(landmark, predict_range(sensor, landmark), params)
+                is_missed = is_missed or (not is_echo and is_confirmed(landmark, params))
+                if is_credible:
+                    after = contradict(landmark, predict_range(sensor, landmark), params)
             local_map = local_map._replace(
                 landmarks=local_map.landmarks[:number] + (after,) + local_map.landmarks[number + 1 :]
             )
-    return local_map
+    missed = count_missed_echo(local_map.missed, measurement.number, measurement.status, is_missed)
+    return local_map._replace(missed=missed)
 
 
 def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:

@@ -18,18 +18,26 @@ class MissedEchoes(NamedTuple):
     counts: tuple[int, ...] = (0,) * SENSORS
 
 
-def count_missed_echoes(before: MissedEchoes, statuses: tuple[int, ...], expected: tuple[bool, ...]) -> MissedEchoes:
-    """Return the counts after one cycle: ``statuses`` of the readings, ``expected`` whether an echo had to come."""
-    counts = tuple(_count(before.counts[number], statuses[number], expected[number]) for number in range(SENSORS))
-    return MissedEchoes(counts)
+def count_missed_echo(before: MissedEchoes, sensor: int, status: int, is_expected: bool) -> MissedEchoes:
+    """Return the counts after one reading: its ``ReadingStatus``, and whether an echo had to come."""
+    at = min(max(sensor, 0), SENSORS - 1)
+    count = before.counts[at]
+    if status == ReadingStatus.ECHO or status == ReadingStatus.BLIND_ZONE:
+        count = 0
+    elif is_expected:
+        count = min(count + 1, MISSED_ECHOES)
+    return MissedEchoes(before.counts[:at] + (count,) + before.counts[at + 1 :])
 
 
-def _count(before: int, status: int, expected: bool) -> int:
-    if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
-        return 0
-    return min(before + 1, MISSED_ECHOES) if expected else before
+def is_credible_miss(missed: MissedEchoes, sensor: int) -> bool:
+    """Return whether a missing echo of a sensor (0 to 11) tells more of its surroundings than of the sensor."""
+    return missed.counts[min(max(sensor, 0), SENSORS - 1)] < MISSED_ECHOES // 2
 
 
-def is_silent(missed: MissedEchoes, sensor: int) -> bool:
-    """Return whether a sensor (0 to 11) is silent."""
-    return missed.counts[sensor] >= MISSED_ECHOES
+def silent_sensors(missed: MissedEchoes) -> int:
+    """Return how many sensors are silent."""
+    count = 0
+    for number in range(SENSORS):
+        if missed.counts[number] >= MISSED_ECHOES:
+            count += 1
+    return count

@@ -26,11 +26,14 @@ class Box(NamedTuple):
 
 
 class OrientedBox(NamedTuple):
-    """A box with the cosine and sine of its heading, which many questions about it share."""
+    """A box with the cosine and sine of its heading in the place of it, which many questions about it share."""
 
-    box: Box
+    x: float
+    y: float
     cos: float
     sin: float
+    length: float
+    width: float
 
 
 class Point(NamedTuple):
@@ -51,13 +54,14 @@ class Corners(NamedTuple):
 
 def orient(box: Box) -> OrientedBox:
     """Return ``box`` with cosine and sine of its heading."""
-    return OrientedBox(box, math.cos(box.heading), math.sin(box.heading))
+    return OrientedBox(box.x, box.y, math.cos(box.heading), math.sin(box.heading), box.length, box.width)
 
 
 def outline(pose: Pose, wheelbase: float, front_overhang: float, rear_overhang: float, width: float) -> Box:
     """Return the box around a car whose rear-axle midpoint is at ``pose``."""
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
-    return outline_box(pose, ahead, wheelbase, front_overhang, rear_overhang, width).box
+    box = outline_box(pose, ahead, wheelbase, front_overhang, rear_overhang, width)
+    return Box(box.x, box.y, pose.heading, box.length, box.width)
 
 
 def outline_box(
@@ -66,9 +70,7 @@ def outline_box(
     """Return the box around a car as :func:`outline`; ``ahead`` is the unit vector of its heading."""
     length = rear_overhang + wheelbase + front_overhang
     half = 0.5 * length - rear_overhang
-    return OrientedBox(
-        Box(pose.x + half * ahead.x, pose.y + half * ahead.y, pose.heading, length, width), ahead.x, ahead.y
-    )
+    return OrientedBox(pose.x + half * ahead.x, pose.y + half * ahead.y, ahead.x, ahead.y, length, width)
 
 
 def line_box(x1: float, y1: float, x2: float, y2: float) -> Box:
@@ -80,6 +82,16 @@ def line_box(x1: float, y1: float, x2: float, y2: float) -> Box:
     return Box(0.5 * (x1 + x2), 0.5 * (y1 + y2), heading, length, 0.0)
 
 
+def orient_line(x1: float, y1: float, x2: float, y2: float) -> OrientedBox:
+    """Return the straight line between two points [m] as :func:`line_box`; a point has the direction of x."""
+    dx = x2 - x1
+    dy = y2 - y1
+    length = math.sqrt(dx * dx + dy * dy)
+    cos = dx / length if length > 0.0 else 1.0
+    sin = dy / length if length > 0.0 else 0.0
+    return OrientedBox(0.5 * (x1 + x2), 0.5 * (y1 + y2), cos, sin, length, 0.0)
+
+
 def corners(box: Box) -> Corners:
     """Return the four corners of ``box``."""
     return box_corners(orient(box))
@@ -87,12 +99,12 @@ def corners(box: Box) -> Corners:
 
 def box_corners(a: OrientedBox) -> Corners:
     """Return the four corners of a box."""
-    ax = 0.5 * a.box.length * a.cos
-    ay = 0.5 * a.box.length * a.sin
-    bx = -0.5 * a.box.width * a.sin
-    by = 0.5 * a.box.width * a.cos
-    x = a.box.x
-    y = a.box.y
+    ax = 0.5 * a.length * a.cos
+    ay = 0.5 * a.length * a.sin
+    bx = -0.5 * a.width * a.sin
+    by = 0.5 * a.width * a.cos
+    x = a.x
+    y = a.y
     return Corners(
         Point(x + ax + bx, y + ay + by),
         Point(x - ax + bx, y - ay + by),
@@ -108,10 +120,10 @@ def point_gap(point: Point, box: Box) -> float:
 
 def point_to_oriented(point: Point, a: OrientedBox) -> float:
     """Return the distance [m] from ``point`` to a box; 0 inside."""
-    dx = point.x - a.box.x
-    dy = point.y - a.box.y
-    along = abs(dx * a.cos + dy * a.sin) - 0.5 * a.box.length
-    across = abs(dy * a.cos - dx * a.sin) - 0.5 * a.box.width
+    dx = point.x - a.x
+    dy = point.y - a.y
+    along = abs(dx * a.cos + dy * a.sin) - 0.5 * a.length
+    across = abs(dy * a.cos - dx * a.sin) - 0.5 * a.width
     along = along if along > 0.0 else 0.0
     across = across if across > 0.0 else 0.0
     return math.sqrt(along * along + across * across)
@@ -134,8 +146,11 @@ def box_gap(a: OrientedBox, b: OrientedBox) -> float:
     Two rectangles apart are nearest at a corner of one of them.
     """
     depth = overlap_depth(a, b)
-    if depth > 0.0:
-        return -depth
+    return -depth if depth > 0.0 else separation(a, b)
+
+
+def separation(a: OrientedBox, b: OrientedBox) -> float:
+    """Return the distance [m] between two boxes that do not overlap."""
     return _smaller(_corners_gap(box_corners(a), b), _corners_gap(box_corners(b), a))
 
 
@@ -148,25 +163,25 @@ def boxes_depth(a: Box, b: Box) -> float:
 def overlap_depth(a: OrientedBox, b: OrientedBox) -> float:
     """Return the least overlap [m] along the four directions of two boxes' sides (separating axes).
 
-    It is the penetration depth where it is positive; 0 or less where the boxes touch or are apart.
+    It is the penetration depth where it is positive; 0 or less where the boxes touch or are apart, and then minus a
+    distance that their gap is never less than. Cosine and sine of the angle between them follow from theirs.
     """
-    turn = b.box.heading - a.box.heading
-    cos = abs(math.cos(turn))
-    sin = abs(math.sin(turn))
+    cos = abs(a.cos * b.cos + a.sin * b.sin)
+    sin = abs(a.cos * b.sin - a.sin * b.cos)
     return _smaller(_depth_along(a, b, cos, sin), _depth_along(b, a, cos, sin))
 
 
-def centre_gap(a: Box, b: Box) -> float:
+def centre_gap(a: OrientedBox, b: Box) -> float:
     """Return a distance [m] that the gap of two boxes is never less than: that of the circles around them."""
     dx = a.x - b.x
     dy = a.y - b.y
-    gap = math.sqrt(dx * dx + dy * dy) - reach(a) - reach(b)
+    gap = math.sqrt(dx * dx + dy * dy) - reach(a.length, a.width) - reach(b.length, b.width)
     return gap if gap > 0.0 else 0.0
 
 
-def reach(box: Box) -> float:
-    """Return the distance [m] from the centre of ``box`` to its corners."""
-    return 0.5 * math.sqrt(box.length * box.length + box.width * box.width)
+def reach(length: float, width: float) -> float:
+    """Return the distance [m] from the centre of a box to its corners."""
+    return 0.5 * math.sqrt(length * length + width * width)
 
 
 def ray_box(start: Point, direction: float, box: Box) -> float:
@@ -230,10 +245,10 @@ def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Po
 
 def _depth_along(a: OrientedBox, b: OrientedBox, cos_turn: float, sin_turn: float) -> float:
     """Return the lesser overlap [m] of the boxes seen along the two axes of ``a``; negative where they are apart."""
-    dx = b.box.x - a.box.x
-    dy = b.box.y - a.box.y
-    along = 0.5 * (a.box.length + b.box.length * cos_turn + b.box.width * sin_turn)
-    across = 0.5 * (a.box.width + b.box.length * sin_turn + b.box.width * cos_turn)
+    dx = b.x - a.x
+    dy = b.y - a.y
+    along = 0.5 * (a.length + b.length * cos_turn + b.width * sin_turn)
+    across = 0.5 * (a.width + b.length * sin_turn + b.width * cos_turn)
     return _smaller(along - abs(dx * a.cos + dy * a.sin), across - abs(dy * a.cos - dx * a.sin))
 
 

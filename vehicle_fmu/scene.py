@@ -14,11 +14,12 @@ from modelkit.geometry import (
     Box,
     OrientedBox,
     Point,
-    box_gap,
     centre_gap,
-    line_box,
     orient,
+    orient_line,
     outline_box,
+    overlap_depth,
+    separation,
 )
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
@@ -27,6 +28,8 @@ HOUSE = "project default; the source states none"
 NEVER_TIME = 1e9
 TOUCH_DEPTH = 1e-9
 """Penetration depth [m] of what only touches: less than any other."""
+MAX_ROUNDING_ERROR = 1e-6
+"""Of a bound of a gap [m]: the coordinates of a map have steps of 1.5e-8 m."""
 FAR_OUT = 1e8
 """Largest coordinate [m]: that of a map will do."""
 
@@ -98,22 +101,25 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time
     nearest = NO_HIT
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            nearest = nearest_of(nearest, body, obstacle_box(obstacle, time_ns), True)
+            box = obstacle_box(obstacle, time_ns)
+            if nearest <= 0.0 or centre_gap(body, box) < nearest:
+                nearest = nearest_of(nearest, body, orient(box), True)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
             part = body
             if kerb.height < scene.ground_clearance:
                 part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
-            line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
+            line = orient_line(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
             nearest = nearest_of(nearest, part, line, kerb.height >= kerb_height)
     return nearest
 
 
-def nearest_of(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> float:
+def nearest_of(nearest: float, car: OrientedBox, thing: OrientedBox, is_obstacle: bool) -> float:
     """Return the smaller of ``nearest`` and the gap of car and thing, which is negative inside an obstacle."""
-    if nearest > 0.0 and centre_gap(car.box, thing) >= nearest:
+    depth = overlap_depth(car, thing)
+    if nearest > 0.0 and -depth >= nearest + MAX_ROUNDING_ERROR:
         return nearest
-    gap = box_gap(car, orient(thing))
+    gap = -depth if depth > 0.0 else separation(car, thing)
     if gap <= 0.0:
         gap = -max(TOUCH_DEPTH, -gap) if is_obstacle else 0.0
     return min(nearest, gap)

@@ -117,7 +117,7 @@ def _hear(
     distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, side: Point, box: Box
 ) -> tuple[float, ...]:
     turned = orient(box)
-    seen = ScannedBox(turned, box_corners(turned), reach(box))
+    seen = ScannedBox(turned, box_corners(turned), reach(box.length, box.width))
     return tuple(
         _nearer(nearest, pose, ahead, mount, side, seen)
         for nearest, mount in zip(distances, sensors.mounts, strict=True)
@@ -133,8 +133,8 @@ def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: 
         pose.x + mount.x * ahead.x - mount.y * ahead.y,
         pose.y + mount.x * ahead.y + mount.y * ahead.x,
     )
-    dx = seen.box.box.x - start.x
-    dy = seen.box.box.y - start.y
+    dx = seen.box.x - start.x
+    dy = seen.box.y - start.y
     far = nearest + seen.radius
     if dx * dx + dy * dy >= far * far:
         return nearest

@@ -17,7 +17,10 @@ from modelkit.geometry import (
     cone_box,
     corners,
     line_box,
+    orient,
+    orient_line,
     outline,
+    overlap_depth,
     point_gap,
     ray_box,
 )
@@ -50,7 +53,8 @@ def test_gap_and_overlap_of_100_000_pairs() -> None:
     overlaps = 0
     for (a, b), gap, area in zip(ours, gaps, shared, strict=True):
         assert abs(boxes_gap(a, b) - gap) < 1e-9
-        assert centre_gap(a, b) <= gap + 1e-9
+        assert centre_gap(orient(a), b) <= gap + 1e-9
+        assert -overlap_depth(orient(a), orient(b)) <= gap + 1e-9
         if area > 1e-9 or gap > 1e-9:
             assert boxes_overlap(a, b) == (area > 1e-9)
         overlaps += area > 1e-9
@@ -60,6 +64,14 @@ def test_gap_and_overlap_of_100_000_pairs() -> None:
 def _polygons(boxes: list[Box]) -> list[shapely.Geometry]:
     rings = [[(p.x, p.y) for p in corners(box)] for box in boxes]
     return list(shapely.polygons(rings))
+
+
+def test_a_line_has_the_direction_of_its_ends() -> None:
+    draw = random.Random(4)
+    for _ in range(200):
+        ends = [draw.uniform(-20.0, 20.0) for _ in range(4)]
+        assert orient_line(*ends) == pytest.approx(orient(line_box(*ends)), abs=1e-12)
+    assert orient_line(1.0, 2.0, 1.0, 2.0) == orient(line_box(1.0, 2.0, 1.0, 2.0))
 
 
 def test_corners_are_those_of_the_turned_rectangle() -> None:

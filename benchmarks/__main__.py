@@ -15,6 +15,7 @@ from benchmarks.results import (
     SIZE,
     SKIPPED,
     SMALLEST,
+    Measurement,
     is_idle,
     lasting,
     machine,
@@ -39,7 +40,16 @@ def main(arguments: list[str]) -> int:
     if asked.in_process:
         return run_here(names[0])
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
-    return sum(run_apart(name, asked.smallest, asked.table) for name in names)
+    measurements: list[Measurement] = []
+    failed = sum(run_apart(name, asked.smallest, asked.table, measurements) for name in names)
+    print(f"\n{text_of(measurements)}")
+    return failed
+
+
+def text_of(measurements: list[Measurement]) -> str:
+    """Return all that was measured as one table."""
+    width = max((len(row.quantity) for row in measurements), default=0)
+    return "\n".join(f"{row.benchmark:12} {row.quantity:{width}} {row.value:>10} {row.unit}" for row in measurements)
 
 
 def run_here(name: str) -> int:
@@ -53,8 +63,11 @@ def run_here(name: str) -> int:
     return 0
 
 
-def run_apart(name: str, is_smallest: bool, table: Path) -> bool:
-    """Run one benchmark in a process of its own and write its results into the table; return whether it failed."""
+def run_apart(name: str, is_smallest: bool, table: Path, all_measurements: list[Measurement]) -> bool:
+    """Run one benchmark in a process of its own and write its results into the table; return whether it failed.
+
+    They are added to ``all_measurements``.
+    """
     print(f"\n== {name}", flush=True)
     where, was_idle = machine(), is_idle()
     with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
@@ -63,6 +76,7 @@ def run_apart(name: str, is_smallest: bool, table: Path) -> bool:
         command = [sys.executable, "-m", "benchmarks", "--in-process", name]
         code = subprocess.run(command, env=environment, check=False).returncode
         measurements = read_measurements(file, name, where)
+    all_measurements += measurements
     if code == 0 and not measurements:
         print(f"{name} recorded nothing")
     if code == 0 and measurements and not is_smallest:

@@ -41,6 +41,10 @@ def main() -> None:
         record(f"one step, {name}", wall / steps * 1e6, "us")
         print(f"  {name:20} {wall * 1e3:8.1f} ms  {wall / steps * 1e6:7.1f} us a step  {factor:6.0f} times real time")
     base, fmus, log = (median[name] / steps * 1e6 for name in list(runs)[:3])
+    for name in ("PythonFMUs", "native FMUs"):
+        ratio = median[f"{name}, log"] / median[name]
+        record(f"{name}: with log / without", ratio, "1")
+        print(f"  {name}: with log {ratio:.2f} times as long as without")
     print("one step of the PythonFMU pair, all signals exchanged and recorded:")
     print(f"  models and master {base:.1f} us, FMI calls {fmus - base:.1f} us, log {log - fmus:.1f} us")
 

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
-from orchestrator.studies.sweep.batch import compile_models, run_batch
+from orchestrator.studies.sweep.batch import compile_models, own_choices, run_batch
 from orchestrator.studies.sweep.disturbed import fault_numbers
 from orchestrator.studies.sweep.engine import cores
 from orchestrator.studies.sweep.job import Chunk, arrays, make_job
@@ -30,22 +30,28 @@ from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.read_study import bind
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.study.study_file import StudyFile
+from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM
 from orchestrator.studies.sweep.sweep import Options, sweep
 
 REPEATS = size(5, 1)
 MANOEUVRES = size(2000, 20)
 SIZES = size((1_000, 10_000, 100_000), (20,))
+PLAIN, DISTURBED = "guo2015-case4", "apa-parallel-real"
+STARTS = {PLAIN: (-0.01, 0.01), DISTURBED: (1.8, 1.85)}
+"""Scenario -> range of the start's y [m]. The disturbed one has tyres, sensor noise and odometry error."""
+DISTURBED_SHARE = 10
+"""Fewer runs are made of the disturbed scenario."""
 SHORT = 0.5
 """Length of the runs whose number is grown [s]."""
 
 
-def study(count: int, **changes: Any) -> Study:
-    runs = {"monte_carlo": {"n": count, "vehicle.start.y": {"uniform": [-0.01, 0.01]}}}
-    return bind(StudyFile(name="bench", scenario="guo2015-case4", runs=runs, set=changes))
+def study(count: int, scenario: str = PLAIN, **changes: Any) -> Study:
+    runs = {"monte_carlo": {"n": count, "vehicle.start.y": {"uniform": list(STARTS[scenario])}}}
+    return bind(StudyFile.model_validate({"name": "bench", "scenario": scenario, "runs": runs, "set": changes}))
 
 
-def bound(count: int, **changes: Any) -> tuple[Any, Chunk]:
-    chosen = study(count, **changes)
+def bound(count: int, scenario: str = PLAIN, **changes: Any) -> tuple[Any, Chunk]:
+    chosen = study(count, scenario, **changes)
     return make_job(chosen), Chunk(0, 0, chosen.design.values, chosen.design.seeds)
 
 
@@ -60,38 +66,61 @@ def measured(work: Callable[[], object], repeats: int = REPEATS) -> tuple[float,
     return statistics.median(walls), statistics.median(processors)
 
 
-def in_threads(rows: Any, parts: list[tuple[Any, Any, Any, Any]]) -> None:
-    with ThreadPoolExecutor(cores()) as pool:
-        list(pool.map(lambda part: rows(*part), parts))
+class Prepared(NamedTuple):
+    """The runs of a study, compiled, with the arrays that they take."""
+
+    rows: Any
+    arrays: tuple[Any, Any, Any]
+    out: Any
+
+    def run(self, threads: int) -> None:
+        """Make all runs in parts, on ``threads`` threads."""
+        share = max(1, len(self.out) // (4 * threads))
+        parts = [slice(at, at + share) for at in range(0, len(self.out), share)]
+        if threads == 1:
+            self.rows(*self.arrays, self.out)
+            return
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(lambda part: self.rows(*(item[part] for item in self.arrays), self.out[part]), parts))
+
+
+def prepare(scenario: str, count: int, has_own_code: bool) -> Prepared:
+    """Return ``count`` runs of a scenario by the complete models, or by code made for the study."""
+    job, chunk = bound(count, scenario)
+    model = Scenario(**job.scenario)
+    parameters, times = arrays(job, chunk)
+    choices = own_choices(job._replace(runs=STUDY_CODE_FROM if has_own_code else 0), model, parameters)
+    out = np.empty((count, FIRST_MEASURE + len(job.measures)))
+    prepared = Prepared(
+        compile_models(tuple(job.measures), model, choices), (parameters, times, fault_numbers(job, chunk, model)), out
+    )
+    prepared.run(1)
+    return prepared
 
 
 def rates() -> None:
-    job, chunk = bound(MANOEUVRES)
-    begun = time.perf_counter()
-    model = Scenario(**job.scenario)
-    rows = compile_models(tuple(job.measures), model)
-    print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
-    (parameters, times), faults = arrays(job, chunk), fault_numbers(job, chunk, model)
-    out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))
-    share = max(1, MANOEUVRES // (4 * cores()))
-    places = [slice(at, at + share) for at in range(0, MANOEUVRES, share)]
-    parts = [(parameters[place], times[place], faults[place], out[place]) for place in places]
-    wall, processor = measured(lambda: rows(parameters, times, faults, out))
-    record("case-4 manoeuvre, compiled, processor time", 1e3 * processor / MANOEUVRES, "ms")
-    record("case-4 manoeuvres, compiled, one thread", MANOEUVRES / wall, "1/s")
-    print(f"compiled, one thread       {MANOEUVRES / wall:8.0f} case-4 manoeuvres a second, "
-          f"{1e3 * processor / MANOEUVRES:.2f} ms of processor each")  # fmt: skip
-    many, processor = measured(lambda: in_threads(rows, parts))
-    print(f"compiled, {cores()} threads        {MANOEUVRES / many:8.0f} a second, "
-          f"{1e3 * processor / MANOEUVRES:.2f} ms of processor each")  # fmt: skip
-    record(f"case-4 manoeuvres, compiled, {cores()} threads", MANOEUVRES / many, "1/s")
+    """Print and record runs a second: plain and disturbed, complete and sliced, on one, two and all cores."""
+    threads = sorted({1, 2, cores()})
+    print(f"{'runs a second':34}" + "".join(f"{count:3} threads" for count in threads) + "  processor time of a run")
+    for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, max(2, MANOEUVRES // DISTURBED_SHARE))):
+        for name, has_own_code in (("complete", False), ("study code", True)):
+            runs = prepare(scenario, count, has_own_code)
+            found = [measured(lambda n=n, runs=runs: runs.run(n), REPEATS) for n in threads]
+            label = f"{scenario}, {name}"
+            for number, (wall, _) in zip(threads, found, strict=True):
+                record(f"{label}, {number} threads", count / wall, "1/s")
+            each = 1e3 * found[0][1] / count
+            record(f"{label}, one run, processor time", each, "ms")
+            print(f"{label:34}" + "".join(f"{count / wall:11.0f}" for wall, _ in found) + f"  {each:.2f} ms")
+            if scenario == PLAIN and not has_own_code:
+                processor, out = found[0][1], runs.out
     steps = float(out[:, 1].sum()) / 1e7
     record("one exchange and step of the pair, processor time", 1e9 * processor / steps, "ns")
     print(f"one exchange and step of the pair: {1e9 * processor / steps:.0f} ns of processor")
-    scenario = load_scenario("guo2015-case4")
+    case4 = load_scenario(PLAIN)
     for kind in ("python", "native"):
         files = fmu_files(kind)
-        alone, burnt = measured(lambda files=files, kind=kind: run_scenario(scenario, files, kind=kind), 3)
+        alone, burnt = measured(lambda files=files, kind=kind: run_scenario(case4, files, kind=kind), 3)
         record(f"case-4 manoeuvre, {kind} FMUs, processor time", 1e3 * burnt, "ms")
         print(f"{kind:6} FMUs, one process   {1.0 / alone:8.1f} a second, {1e3 * burnt:.0f} ms of processor each; "
               f"the batch needs {burnt * MANOEUVRES / processor:.0f} times less")  # fmt: skip

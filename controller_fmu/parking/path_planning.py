@@ -9,6 +9,7 @@ from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import SENSORS
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
@@ -37,7 +38,8 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, least_depth, overhang_of
-from controller_fmu.parking.state import ParkingMemory
+from controller_fmu.parking.slots.slot_filter import filtered_slot
+from controller_fmu.parking.state import ParkingMemory, SearchProgress
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -105,7 +107,15 @@ def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> Slo
     """Return the slot as the map has it now, seen by a vehicle at ``pose``."""
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
-    return correct_slot(memory.search.slot, landmarks, outline, params.mapping)
+    return corrected_slot(memory.search, landmarks, outline, params.mapping)
+
+
+def corrected_slot(
+    search: SearchProgress, landmarks: tuple[Landmark, ...], outline: VehicleOutline, mapping: MappingParams
+) -> SlotCandidate:
+    """Return the slot as it is known now: by all echoes of it, and by what else has been mapped in it."""
+    slot = filtered_slot(search.slot, search.slot_filter, outline)
+    return correct_slot(slot, landmarks, outline, mapping)
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
@@ -137,7 +147,7 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
     if memory.strategy == Strategy.POSE:
         return _with_pose_request(memory, inputs, params)
-    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
+    slot = corrected_slot(memory.search, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
     beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
     if memory.plan.is_relaxed:

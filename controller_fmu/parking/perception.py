@@ -44,6 +44,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
+from controller_fmu.parking.slots.slot_filter import predict_slot, update_slot
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 
 YIELD_TIME = 3.0
@@ -73,6 +74,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     memory = memory._replace(perception=memory.perception._replace(yields=max(memory.perception.yields - 1, 0)))
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(SENSORS))
+        memory = memory._replace(search=_with_slot(memory, inputs, params))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
         return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
@@ -86,6 +88,24 @@ def _with_measurements(perception: Perception, inputs: ParkingSystemInput, param
         local_map=update_map(perception.local_map, readings, inputs.odometry, sensors, params.mapping)
     )
     return perception._replace(pose=inputs.odometry)
+
+
+def _with_slot(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SearchProgress:
+    """Return the search with its slot after a measurement cycle on the way in."""
+    search = memory.search
+    before = memory.perception.pose
+    sensors = params.car.ultrasonic
+    driven = planar_distance(inputs.odometry.x, inputs.odometry.y, before.x, before.y)
+    if not search.slot_filter.is_begun or driven <= 0.0:
+        return search
+    slot_filter = predict_slot(search.slot_filter, inputs.odometry, driven, params.mapping)
+    variance = range_variance(params.mapping.range_noise, sensors.resolution)
+    for number in range(SENSORS):
+        reading = memory.perception.cycle.readings[number]
+        if reading_status(reading, sensors) == ReadingStatus.ECHO:
+            sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+            slot_filter = update_slot(slot_filter, search.slot, sensor, reading, variance, params.mapping.gate)
+    return search._replace(slot_filter=slot_filter)
 
 
 def _with_tracks(

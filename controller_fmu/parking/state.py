@@ -16,6 +16,7 @@ from controller_fmu.parking.objects.track import ObjectTrack
 from controller_fmu.parking.obstacle_map import REMEMBERED
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.slots.candidate import SlotCandidate
+from controller_fmu.parking.slots.slot_filter import SlotFilter
 from modelkit.vocabulary import Pose
 
 
@@ -35,6 +36,8 @@ class SearchProgress(NamedTuple):
     """Slots that the driver may choose, the newest first."""
     shown: int = 0
     """Number of the slot shown among those, from 1."""
+    slot_filter: SlotFilter = SlotFilter()
+    """What is measured of the slot on the way in."""
     refused: SlotCandidate = SlotCandidate()
     """The last slot without a path."""
 

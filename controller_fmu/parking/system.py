@@ -50,6 +50,7 @@ from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.slots.slot_filter import begin_slot_filter
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
 from modelkit.maths import clamp, sign, wrap_angle
 
@@ -226,7 +227,8 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.SEARCHING and before != ParkingState.SEARCHING:
         memory = _begin_search(memory, before)
     if state == ParkingState.CONFIRMING and before != ParkingState.CONFIRMING:
-        search = memory.search._replace(pose=inputs.odometry, waited=0)
+        slot_filter = begin_slot_filter(memory.search.slot)
+        search = memory.search._replace(pose=inputs.odometry, waited=0, slot_filter=slot_filter)
         memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
     if state == ParkingState.PLANNING and before == ParkingState.STANDBY:
         memory = memory._replace(strategy=Strategy.POSE)

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from controller_fmu.parking.geometry.outline import boundary_point, extent_within, vehicle_outline
-from controller_fmu.parking.map.chain_update import as_point, is_better, same_side
+from controller_fmu.parking.map.chain_update import (
+    as_point,
+    edge_guess,
+    first_of_body,
+    is_better,
+    is_in_view,
+    same_side,
+)
 from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
 from controller_fmu.parking.map.facing_surface import facing_segment
 from controller_fmu.parking.map.landmark import (
@@ -63,6 +70,48 @@ def test_exact_ranges_give_the_exact_segment() -> None:
     assert start_point(found).x == pytest.approx(0.0, abs=0.002)
     assert end_point(found).x == pytest.approx(1.8, abs=0.002)
     assert offset_of(found, 0.9, 0.0) == pytest.approx(0.0, abs=0.002)
+
+
+def test_an_edge_is_guessed_where_the_cone_met_it() -> None:
+    """A sensor turned by 8 deg against the side; the first echo comes up to a step after its cone met the edge."""
+    half, tilt, step = math.radians(30.0), math.radians(8.0), 0.4
+    sensor = SensorPose(0.0, 0.0, math.sin(tilt), -math.cos(tilt), math.cos(half), math.sin(half))
+    line = Landmark(LandmarkType.SEGMENT, 0.0, -1.0)
+    errors = []
+    for late in np.linspace(0.0, step, 9):
+        x = late - math.tan(half + tilt)
+        echo = begin_chain(sensor._replace(x=x), math.hypot(x, 1.0) if x < 0.0 else 1.0, True).echoes[0]
+        guess = edge_guess(line, echo, sensor, 1.0, step)
+        errors.append(guess.along / guess.sigma)
+    assert np.mean(np.square(errors)) < 1.0
+    assert np.max(np.abs(errors)) < 2.0
+
+
+def test_echoes_of_the_body_that_hid_the_next_are_left_out() -> None:
+    """Ranges rise off the corner that is left, then fall towards the next body: its side does not begin before."""
+    ranges = (3.32, 3.50, 3.38, 3.31, 3.27, 3.20, 3.14, 3.11, 3.09, 3.10)
+    chain = EchoChain()
+    for number, measured in enumerate(ranges):
+        sensor = DOWN._replace(x=0.2 * number)
+        chain = begin_chain(sensor, measured, False) if chain.used == 0 else append_echo(chain, sensor, measured)
+    assert first_of_body(chain, 1e-4) == 1
+    assert first_of_body(chain._replace(begins_at_edge=True), 1e-4) == 0
+    assert first_of_body(chain_past(0.0, 1.8, 0.01)._replace(begins_at_edge=False), 1e-4) == 0
+
+
+def test_echoes_off_the_boundary_of_the_cone_make_no_side() -> None:
+    """A vehicle that turns away from a side: the ranges are of where its sensor's cone ends, not of feet on it."""
+    chain = EchoChain()
+    sensor = DOWN
+    half = math.radians(30.0)
+    for number in range(13):
+        turn = math.radians(45.0 - number)
+        sensor = SensorPose(0.05 * number, 1.6, math.sin(turn), -math.cos(turn), math.cos(half), math.sin(half))
+        measured = 1.6 / math.cos(turn - half)
+        chain = begin_chain(sensor, measured, True) if chain.used == 0 else append_echo(chain, sensor, measured)
+    side = Landmark(LandmarkType.SEGMENT, 0.0, 0.4, 0.0, start=0.2, end=2.0)
+    assert not is_in_view(chain, side, sensor)
+    assert is_in_view(chain_past(0.0, 1.8, 0.0), side._replace(y=0.0, start=0.0, end=1.8), DOWN)
 
 
 def test_a_chain_ends_at_a_jump_and_after_lost_echoes() -> None:

@@ -1,4 +1,4 @@
-"""The map: the filter against numpy, and estimates with their covariance over simulated passes."""
+"""The map: estimates with their covariance over simulated passes."""
 
 import math
 from typing import Any
@@ -20,7 +20,6 @@ from controller_fmu.parking.map.landmark import (
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
-from controller_fmu.parking.map.update import Gradient, line_gradient, update_landmark
 from controller_fmu.parking.measurement.silent_sensor import silent_sensors
 from modelkit.geometry import Box
 from modelkit.maths import wrap_angle
@@ -45,26 +44,6 @@ def covariance(landmark: Landmark) -> Any:
 SEGMENT = Landmark(
     LandmarkType.SEGMENT, 1.0, 2.0, 0.3, xx=0.02, xy=0.004, xh=0.001, yy=0.03, yh=-0.002, hh=0.005, start=-1.0, end=1.0
 )
-
-
-def test_update_is_the_kalman_filter_of_the_textbook() -> None:
-    h = Gradient(0.3, -0.8, 0.5)
-    updated = update_landmark(SEGMENT, h, 0.07, 1e-3)
-    p, row = covariance(SEGMENT), np.array([[0.3, -0.8, 0.5]])
-    s = row @ p @ row.T + 1e-3
-    k = p @ row.T / s
-    x = np.array([SEGMENT.x, SEGMENT.y, SEGMENT.heading]) + (k * 0.07)[:, 0]
-    assert (updated.x, updated.y, updated.heading) == pytest.approx(tuple(x))
-    assert covariance(updated) == pytest.approx((np.eye(3) - k @ row) @ p)
-
-
-def test_line_gradient_is_the_derivative_of_the_distance() -> None:
-    h = line_gradient(SEGMENT, 0.4, -0.7)
-    step = 1e-6
-    for name, expected in zip(("x", "y", "heading"), h, strict=True):
-        moved = SEGMENT._replace(**{name: getattr(SEGMENT, name) + step})
-        slope = (abs(offset_of(moved, 0.4, -0.7)) - abs(offset_of(SEGMENT, 0.4, -0.7))) / step
-        assert slope == pytest.approx(expected, abs=1e-5)
 
 
 def test_prediction_turns_a_landmark_about_the_vehicle() -> None:

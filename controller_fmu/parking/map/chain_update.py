@@ -66,6 +66,9 @@ MIN_SURE_LENGTH = 0.5
 MAX_TURN_SIGMA = 0.08
 """A segment longer than ``MIN_SURE_LENGTH`` [m] whose direction has a larger standard deviation [rad] is two faces of a
 body, measured in a turn."""
+VIEW_TOLERANCE = 0.07
+"""A point may lie so far outside the cone, in cosine: cones open by up to 34 deg instead of 30, and sensors look 2 deg
+aside."""
 MAX_MISFIT = 4.0
 """Mean squared residual over the variance of a chain that no segment explains."""
 
@@ -169,7 +172,8 @@ def fit_chain(
     last = chain.used - 1
     begins = ChainEnd(chain.begins_at_edge, OPEN_INSET)
     ends = ChainEnd(ends_at_edge, OPEN_INSET)
-    whole = _fit_part(chain, 0, last, reading, begins, ends)
+    begin = first_of_body(chain, reading.variance)
+    whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at >= MIN_PART and at + MIN_PART <= chain.used:
         parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
@@ -184,10 +188,42 @@ def fit_chain(
             rest = from_echo(chain, at)
             known = _with_edges(second, True, ends_at_edge)
             return _put(landmarks, rest, known, rest.used, params)
-    if whole.chi_square > MAX_MISFIT * chain.used:
+    if whole.chi_square > MAX_MISFIT * chain.used or not is_in_view(chain, whole.landmark, reading.sensor):
         return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
     known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
     return _put(landmarks, chain, known, chain.used, params)
+
+
+def first_of_body(chain: EchoChain, variance: float) -> int:
+    """Return the first echo of a chain's body; those before are of the body that hid it: ranges rise, then fall."""
+    top = 0
+    for number in range(1, MIN_PART):
+        if number + MIN_ECHOES < chain.used and chain.echoes[number].range > chain.echoes[top].range:
+            top = number
+    rise = chain.echoes[top].range - chain.echoes[0].range
+    falls = chain.echoes[top + 1].range < chain.echoes[top].range
+    is_of_other = not chain.begins_at_edge and falls and rise > ROBUST_SIGMA * math.sqrt(2.0 * variance)
+    return top if is_of_other else 0
+
+
+def is_in_view(chain: EchoChain, segment: Landmark, sensor: SensorPose) -> bool:
+    """Return whether a segment's nearest points lie in the sensor's cone, for three of four echoes of its chain.
+
+    Else the echoes came from where the cone's boundary met a side on which no foot of a perpendicular is in view. That
+    point moves along the side as the vehicle turns, so the ranges are those of another line.
+    """
+    outside = 0
+    for number in range(CHAIN):
+        if number < chain.used:
+            echo = chain.echoes[number]
+            along = min(max(along_of(segment, echo.x, echo.y), segment.start), segment.end)
+            point = segment_point(segment, along)
+            dx = point.x - echo.x
+            dy = point.y - echo.y
+            ahead = dx * echo.axis_x + dy * echo.axis_y
+            if ahead < (sensor.cone_cos - VIEW_TOLERANCE) * math.sqrt(dx * dx + dy * dy):
+                outside += 1
+    return 4 * outside <= chain.used
 
 
 def half_gap(echo: ChainEcho, segment: Landmark) -> float:
@@ -204,12 +240,11 @@ def _fit_part(
     line = initial_line(chain, first, last, sensor)
     a = chain.echoes[first]
     b = chain.echoes[last]
-    cone = sensor.cone_sin / sensor.cone_cos
     start = along_of(line, a.x, a.y)
     end = along_of(line, b.x, b.y)
     towards = 1.0 if start < end else -1.0
-    a_guess = EndGuess(start + towards * cone * a.range, CONE_SIGMA * a.range + chain.spacing)
-    b_guess = EndGuess(end - towards * cone * b.range, CONE_SIGMA * b.range + chain.spacing)
+    a_guess = edge_guess(line, a, sensor, towards, _step_at(chain, first, first + 1))
+    b_guess = edge_guess(line, b, sensor, -towards, _step_at(chain, last, last - 1))
     if not begins.is_edge:
         a_guess = EndGuess(start, OPEN_SIGMA, begins.inset)
     if not ends.is_edge:
@@ -217,6 +252,27 @@ def _fit_part(
     if towards < 0.0:
         return fit_segment(chain, first, last, SegmentGuess(line, b_guess, a_guess), reading.variance)
     return fit_segment(chain, first, last, SegmentGuess(line, a_guess, b_guess), reading.variance)
+
+
+def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: float, step: float) -> EndGuess:
+    """Return where an edge is on a line by its outermost echo: on the cone's boundary, ``inwards`` (1, -1).
+
+    It came into the cone at any place of the ``step`` [m] before that echo (evenly distributed).
+    """
+    along = inwards * along_of(line, echo.x, echo.y)
+    for side in (-1.0, 1.0):
+        ray_x = echo.axis_x * sensor.cone_cos - side * echo.axis_y * sensor.cone_sin
+        ray_y = echo.axis_y * sensor.cone_cos + side * echo.axis_x * sensor.cone_sin
+        along = max(along, inwards * along_of(line, echo.x + echo.range * ray_x, echo.y + echo.range * ray_y))
+    opening = CONE_SIGMA * echo.range
+    return EndGuess(inwards * (along - 0.5 * step), math.sqrt(opening * opening + step * step / 12.0))
+
+
+def _step_at(chain: EchoChain, outer: int, inner: int) -> float:
+    """Return the distance [m] from an echo at the edge of a chain's part to the next."""
+    a = chain.echoes[outer]
+    b = chain.echoes[min(max(inner, 0), CHAIN - 1)]
+    return math.sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y))
 
 
 def _with_edges(fit: SegmentFit, first_known: bool, last_known: bool) -> SegmentFit:

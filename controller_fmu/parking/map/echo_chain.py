@@ -26,11 +26,13 @@ MAX_TURN_COS = 0.95
 
 
 class ChainEcho(NamedTuple):
-    """Where the sensor was, and the range; [m]."""
+    """Where the sensor was, and the range [m]; the unit vector of its axis."""
 
     x: float = 0.0
     y: float = 0.0
     range: float = 0.0
+    axis_x: float = 1.0
+    axis_y: float = 0.0
 
 
 class EchoChain(NamedTuple):
@@ -43,9 +45,6 @@ class EchoChain(NamedTuple):
     """Before its first echo there was a farther one, or none."""
     lost: int = 0
     """Cycles without an echo since the last."""
-    axis_x: float = 1.0
-    """Unit vector of the sensor's axis at the first echo."""
-    axis_y: float = 0.0
     landmark: int = -1
     """The landmark that it has made; -1: none."""
     fitted: int = 0
@@ -59,7 +58,8 @@ def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: f
     dy = sensor.y - last.y
     moved = math.sqrt(dx * dx + dy * dy)
     jump = abs(measured - last.range) - MAX_SLOPE * moved
-    same_axis = sensor.axis_x * chain.axis_x + sensor.axis_y * chain.axis_y > MAX_TURN_COS
+    first = chain.echoes[0]
+    same_axis = sensor.axis_x * first.axis_x + sensor.axis_y * first.axis_y > MAX_TURN_COS
     return same_axis and jump < JUMP_SIGMA * math.sqrt(2.0 * variance)
 
 
@@ -85,13 +85,11 @@ def is_passed(chain: EchoChain, sensor: SensorPose) -> bool:
 
 def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> EchoChain:
     """Return a chain of one echo."""
-    first = ChainEcho(sensor.x, sensor.y, measured)
+    first = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     return EchoChain(
         used=1,
         echoes=(first,) * CHAIN,
         begins_at_edge=begins_at_edge,
-        axis_x=sensor.axis_x,
-        axis_y=sensor.axis_y,
     )
 
 
@@ -105,7 +103,7 @@ def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoCh
         return chain
     if chain.used >= CHAIN:
         chain = _thinned(chain)
-    echo = ChainEcho(sensor.x, sensor.y, measured)
+    echo = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     at = chain.used
     echoes = tuple(echo if number == at else chain.echoes[number] for number in range(CHAIN))
     return chain._replace(used=at + 1, echoes=echoes)

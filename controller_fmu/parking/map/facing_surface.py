@@ -60,7 +60,5 @@ def facing_segment(a: SensorPose, a_range: float, b: SensorPose, b_range: float,
         end=0.5 * length,
         start_variance=LATERAL_SIGMA * LATERAL_SIGMA,
         end_variance=LATERAL_SIGMA * LATERAL_SIGMA,
-        start_known=True,
-        end_known=True,
         confirmations=FACING_ECHOES,
     )

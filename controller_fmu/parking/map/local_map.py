@@ -3,14 +3,6 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.map.association import (
-    Explanation,
-    associate,
-    is_contradicted,
-    is_in_reach,
-    predict_range,
-    with_open_ends_extended,
-)
 from controller_fmu.parking.map.chain_update import (
     ChainEvent,
     SideReading,
@@ -22,13 +14,16 @@ from controller_fmu.parking.map.chain_update import (
 )
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, replace_landmark
-from controller_fmu.parking.map.lifecycle import contradict, insert_landmark, landmark_of, merge_into
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
-from controller_fmu.parking.map.update import extend_over_window, update_with_feature
-from controller_fmu.parking.measurement.echo_feature import EchoFeature, FeatureType, echo_feature
-from controller_fmu.parking.measurement.echo_window import EchoWindow, push_echo
+from controller_fmu.parking.map.visibility import (
+    contradict,
+    is_contradicted,
+    is_in_reach,
+    predict_range,
+    with_open_ends_extended,
+)
 from controller_fmu.parking.measurement.predicted_range import PredictedRange
 from controller_fmu.parking.measurement.sensor import (
     FRONT_LEFT_SIDE,
@@ -63,10 +58,9 @@ class Measurement(NamedTuple):
 
 
 class LandmarkMap(NamedTuple):
-    """Landmarks, the last echoes of each sensor, free space, and the odometry pose of the last cycle."""
+    """Landmarks, chains of echoes, free space, and the odometry pose of the last cycle."""
 
     landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
-    windows: tuple[EchoWindow, ...] = (EchoWindow(),) * SENSORS
     chains: tuple[EchoChain, ...] = (EchoChain(),) * SIDE_SENSORS
     """Of the sensors on the flanks."""
     free_space: FreeSpace = FreeSpace()
@@ -104,8 +98,6 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
     status = measurement.status
     if measurement.number >= FIRST_SIDE:
         local_map = _use_side(local_map, measurement, params)
-    else:
-        local_map = _use_bumper(local_map, measurement, params)
     if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = contradict_nearer(local_map, measurement, params)
     else:
@@ -131,40 +123,6 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         chain = found.chain
         local_map = local_map._replace(landmarks=found.landmarks)
     return local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
-
-
-def _use_bumper(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
-    """Return the map after a reading of a sensor in a bumper, which approaches what it measures: windows of echoes."""
-    status = measurement.status
-    window = local_map.windows[measurement.number]
-    if status == ReadingStatus.ECHO:
-        window = push_echo(window, measurement.sensor, measurement.range, measurement.variance)
-    else:
-        window = window._replace(is_new=False)
-    feature = echo_feature(window, measurement.variance, measurement.sensor.cone_cos)
-    if feature.type != FeatureType.NONE:
-        landmarks = use_feature(local_map.landmarks, feature, window, measurement.variance, params)
-        local_map = local_map._replace(landmarks=landmarks)
-    at = min(max(measurement.number, 0), FIRST_SIDE - 1)
-    return local_map._replace(windows=local_map.windows[:at] + (window,) + local_map.windows[at + 1 :])
-
-
-def use_feature(
-    landmarks: tuple[Landmark, ...], feature: EchoFeature, window: EchoWindow, variance: float, params: MappingParams
-) -> tuple[Landmark, ...]:
-    """Return the landmarks after a feature: one updated, one begun, or, if it is ambiguous, one confirmed."""
-    found = associate(landmarks, feature, variance, params)
-    if found.explanation == Explanation.UNEXPLAINED:
-        new = landmark_of(feature, variance)
-        return insert_landmark(landmarks, new) if new.type != LandmarkType.NONE else landmarks
-    landmark = landmarks[found.landmark]
-    if found.explanation == Explanation.AMBIGUOUS:
-        return replace_landmark(landmarks, found.landmark, landmark._replace(contradictions=0))
-    updated = update_with_feature(landmark, feature, variance)
-    if feature.type == FeatureType.SIDE:
-        updated = extend_over_window(updated, window, variance)
-    landmarks = replace_landmark(landmarks, found.landmark, updated)
-    return merge_into(landmarks, found.landmark, params)
 
 
 def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:

@@ -19,8 +19,5 @@ class MappingParams(NamedTuple):
         float, Signal("1/m", "odometry heading drift, variance per metre: 0.25 deg over 10 m", 0.0, 1.0, HOUSE)
     ] = 1.9e-6
     gate: Annotated[float, Signal("1", "innovation gate, chi-square of 1 degree of freedom", 1.0, 100.0, HOUSE)] = 9.0
-    ambiguity: Annotated[
-        float, Signal("1", "difference of chi-square that decides between two landmarks", 0.0, 100.0, HOUSE)
-    ] = 3.0
     confirmations: Annotated[int, Signal("1", "updates that confirm a landmark", 1, 100, HOUSE)] = 5
     contradictions: Annotated[int, Signal("1", "missed echoes in a row that delete it", 1, 100, HOUSE)] = 5

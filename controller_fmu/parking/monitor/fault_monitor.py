@@ -57,7 +57,7 @@ def advance_clocks(
         requested = expectation.steering_wheel_angle
         steering = watch_steering(clocks.steering, requested, angle, tolerance, limits.steering_rate, dt_ns)
     waits = still and expectation.moves and not expectation.is_blocked
-    blocked = clocks.blocked + dt_ns if still and expectation.is_blocked else 0
+    blocked = clocks.blocked + (dt_ns if expectation.is_blocked else 0) if still else 0
     return FaultClocks(
         waiting=clocks.waiting + dt_ns if waits else 0,
         stopping=clocks.stopping + dt_ns if not still and not expectation.moves else 0,

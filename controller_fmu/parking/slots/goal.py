@@ -9,10 +9,8 @@ from controller_fmu.parking.slots.params import SlotParams
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
-MAX_KERB_DISTANCE = 1.2
-"""What lies farther [m] beside a vehicle that stands flush with its neighbours is not its kerb."""
 MAX_KERB_SHIFT = 0.05
-"""Towards a kerb the vehicle leaves its neighbours' line by this [m] at most: sensors cannot tell it from a wall."""
+"""Towards a kerb the vehicle leaves its neighbours' line by this [m] at most, if that is enough."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
@@ -24,8 +22,8 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         shift = 0.0
         if left < params.kerb_min:
             shift = left - params.kerb_min
-        elif left > params.kerb_max and candidate.depth < width + MAX_KERB_DISTANCE:
-            shift = min(left - params.kerb_max, MAX_KERB_SHIFT)
+        elif left > params.kerb_max and left < params.kerb_max + MAX_KERB_SHIFT:
+            shift = left - params.kerb_max
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:

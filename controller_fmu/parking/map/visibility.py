@@ -1,27 +1,17 @@
-"""Data association: which landmark an echo feature came from, by Mahalanobis distance inside a gate.
-
-The distance to a segment is the point's offset from its line over the standard deviation of both, and how far beyond an
-end it lies over that of its bearing. Where two landmarks agree about as well the feature is *ambiguous* and updates
-neither. If none agrees it is *unexplained* and begins a landmark.
-"""
+"""What a sensor should measure of a landmark, and when an echo that does not come contradicts it."""
 
 import math
-from enum import IntEnum
-from typing import NamedTuple
 
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
     Landmark,
     LandmarkType,
     along_of,
     end_point,
     length_of,
-    offset_of,
     offset_variance,
     start_point,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.echo_feature import EchoFeature, FeatureType
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
     PredictedRange,
@@ -29,17 +19,9 @@ from controller_fmu.parking.measurement.predicted_range import (
     predicted_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
-from modelkit.geometry import NO_HIT
 
-NO_LANDMARK = -1
-CONTIGUOUS = 0.12
-"""A feature up to this [m] beyond an end continues the side: one measurement cycle at 10 km/h."""
 SURFACE_DEVIATION = 0.02
 """Standard deviation [m] of a vehicle's side from a straight line: bumpers, mirrors, wheels."""
-CORNER_DEVIATION = 0.05
-"""The same [m] at a corner, which is rounded by about twice as much."""
-FACING_COS = 0.8
-"""Cosine of the angle between a side's normal and the direction of its echo, at least: 37 deg, past the half cone."""
 OPEN_EXTENSION = 1.5
 """Beyond an open end echoes of the same line are expected for this far [m]: the range of monitored echoes."""
 BODY_BETWEEN = 1.0
@@ -47,78 +29,8 @@ BODY_BETWEEN = 1.0
 contradicts nothing, so what has come between two cones is kept."""
 WELL_IN_VIEW = 0.87
 """A point counts as surely in view within this fraction of the half cone: the mounting errs by some degrees."""
-
-
-class Explanation(IntEnum):
-    """How a feature relates to the map."""
-
-    UNEXPLAINED = 0
-    EXPLAINED = 1
-    AMBIGUOUS = 2
-
-
-class Association(NamedTuple):
-    """The landmark that a feature came from, and the squared Mahalanobis distance."""
-
-    explanation: int = Explanation.UNEXPLAINED
-    landmark: int = NO_LANDMARK
-    chi_square: float = NO_HIT
-
-
-def associate(
-    landmarks: tuple[Landmark, ...], feature: EchoFeature, variance: float, params: MappingParams
-) -> Association:
-    """Return what a feature came from; ``variance`` [m2] of its range."""
-    best = NO_HIT
-    second = NO_HIT
-    index = NO_LANDMARK
-    for number in range(LANDMARKS):
-        if landmarks[number].type != LandmarkType.NONE:
-            chi_square = mahalanobis(landmarks[number], feature, variance)
-            if chi_square < best:
-                second = best
-                best = chi_square
-                index = number
-            else:
-                second = min(second, chi_square)
-    if best > params.gate:
-        return Association()
-    ambiguous = second < params.gate and second - best < params.ambiguity
-    return Association(Explanation.AMBIGUOUS if ambiguous else Explanation.EXPLAINED, index, best)
-
-
-def mahalanobis(landmark: Landmark, feature: EchoFeature, variance: float) -> float:
-    """Return the squared Mahalanobis distance of a feature from a landmark; ``NO_HIT``: cannot be of it."""
-    lateral = feature.range * feature.bearing_sigma
-    deviation = CORNER_DEVIATION if feature.type == FeatureType.CORNER else SURFACE_DEVIATION
-    roughness = deviation * deviation
-    if landmark.type == LandmarkType.POINT:
-        if feature.type == FeatureType.SIDE:
-            return NO_HIT
-        return _point_distance(landmark, feature, variance + roughness, lateral * lateral + roughness)
-    facing = feature.uy * math.cos(landmark.heading) - feature.ux * math.sin(landmark.heading)
-    if facing > 0.0 or (facing > -FACING_COS and feature.type == FeatureType.SIDE):
-        return NO_HIT
-    along = along_of(landmark, feature.x, feature.y)
-    offset = offset_of(landmark, feature.x, feature.y)
-    beyond = max(0.0, max(landmark.start - along, along - landmark.end) - CONTIGUOUS)
-    tilt = 1.0 - facing * facing
-    across = offset_variance(landmark, along) + variance + roughness + tilt * lateral * lateral
-    end_variance = landmark.start_variance if along < landmark.start else landmark.end_variance
-    return offset * offset / across + beyond * beyond / (lateral * lateral + end_variance)
-
-
-def _point_distance(landmark: Landmark, feature: EchoFeature, radial: float, lateral: float) -> float:
-    """Return d' (P + R)^-1 d of a feature's point and a point landmark, R along and across the feature's direction."""
-    ux = feature.ux
-    uy = feature.uy
-    dx = feature.x - landmark.x
-    dy = feature.y - landmark.y
-    sxx = landmark.xx + radial * ux * ux + lateral * uy * uy
-    sxy = landmark.xy + (radial - lateral) * ux * uy
-    syy = landmark.yy + radial * uy * uy + lateral * ux * ux
-    determinant = sxx * syy - sxy * sxy
-    return (syy * dx * dx - 2.0 * sxy * dx * dy + sxx * dy * dy) / max(determinant, 1e-12)
+MIN_LENGTH = 0.3
+"""A segment shortened below this [m] is deleted."""
 
 
 def predict_range(sensor: SensorPose, landmark: Landmark) -> PredictedRange:
@@ -184,3 +96,22 @@ def is_contradicted(
     surely_in_view = across * sensor.cone_cos <= WELL_IN_VIEW * ahead * sensor.cone_sin
     beyond_blind_zone = predicted.distance > min_range + 3.0 * sigma
     return surely_in_view and beyond_blind_zone and predicted.distance < free_range - 3.0 * sigma
+
+
+def contradict(landmark: Landmark, predicted: PredictedRange, params: MappingParams) -> Landmark:
+    """Return the landmark after an expected echo did not come: counted, then shortened or deleted.
+
+    A segment that is contradicted nearer to one end than to the other loses that end, as an open one; a point, or what
+    would be left too short, is deleted.
+    """
+    count = landmark.contradictions + 1
+    if count < params.contradictions:
+        return landmark._replace(contradictions=count)
+    if landmark.type == LandmarkType.POINT:
+        return Landmark()
+    along = along_of(landmark, predicted.x, predicted.y)
+    if along - landmark.start < landmark.end - along:
+        shortened = landmark._replace(start=along + MIN_LENGTH, start_known=False, contradictions=0)
+    else:
+        shortened = landmark._replace(end=along - MIN_LENGTH, end_known=False, contradictions=0)
+    return shortened if length_of(shortened) > MIN_LENGTH else Landmark()

@@ -45,6 +45,7 @@ BODY = (0.20, 0.42, 0.75, 0.85)
 TYRE = (0.10, 0.10, 0.10, 1.0)
 GREEN = (0.15, 0.60, 0.30, 0.9)
 GREY = (0.55, 0.57, 0.60, 0.9)
+DOUBLE = struct.Struct("<d")
 ORANGE = (0.90, 0.50, 0.10, 1.0)
 
 
@@ -91,7 +92,7 @@ class Frames:
             part.rotation.z, part.rotation.w = self._mark(next(marks)), self._mark(next(marks))
         template = bytes(room) + message.SerializeToString(deterministic=True)
         self._template = np.frombuffer(template, dtype=np.uint8)[None, :]
-        self._numbers = [template.index(struct.pack("<d", mark)) for mark in self._marks]
+        self._numbers = [template.index(DOUBLE.pack(mark)) for mark in self._marks]
         varint = b"\x80\x80\x80\x80\x04"
         times = [match.start() for match in re.finditer(re.escape(varint), template)]
         self._seconds, self._nanos = times[::2], times[1::2]
@@ -206,7 +207,22 @@ def trail(t_ns: int, poses: list[bytes]) -> bytes:
 
 def trail_pose(pose: tuple[float, float, float]) -> bytes:
     """Return a pose as a part of a trail: fields of a protobuf message may be written one after the other."""
-    return PosesInFrame(poses=[planar_pose(*pose)]).SerializeToString(deterministic=True)
+    x, y, heading = pose
+    part = bytearray(TRAIL_TEMPLATE)
+    for place, value in zip(TRAIL_PLACES, (x, y, math.sin(0.5 * heading), math.cos(0.5 * heading)), strict=True):
+        DOUBLE.pack_into(part, place, value)
+    return bytes(part)
+
+
+def _trail_template(values: tuple[float, ...]) -> tuple[bytes, tuple[int, ...]]:
+    """Return a part of a trail that holds ``values``: x, y, and z and w of the rotation; and where they are."""
+    x, y, z, w = values
+    pose = Pose(position=Vector3(x=x, y=y), orientation=Quaternion(z=z, w=w))
+    template = PosesInFrame(poses=[pose]).SerializeToString(deterministic=True)
+    return template, tuple(template.index(DOUBLE.pack(value)) for value in values)
+
+
+TRAIL_TEMPLATE, TRAIL_PLACES = _trail_template((1.25, 2.25, 3.25, 4.25))
 
 
 def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntity:

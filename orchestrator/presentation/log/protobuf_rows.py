@@ -147,10 +147,12 @@ def _runs(offsets: list[int]) -> list[ValueRun]:
 
 def _write_varints(views: list[tuple[slice, NDArray[Any]]], values: NDArray[np.int64]) -> None:
     """Write whole numbers as varints of five bytes: four in one word, then the fifth."""
-    words = np.full(values.shape, CONTINUATION_BITS, dtype=np.uint32)
-    for byte in range(4):
-        words |= ((values << byte) & (0x7F << 8 * byte)).astype(np.uint32)
-    last = (values >> 28 & 0x0F).astype(np.uint8)
+    words = (values & 0x7F).astype(np.uint32) | np.uint32(CONTINUATION_BITS)
+    last = np.zeros(values.shape, dtype=np.uint8)
+    if values.size and (values.min() < 0 or values.max() > 0x7F):
+        for byte in range(1, 4):
+            words |= ((values << byte) & (0x7F << 8 * byte)).astype(np.uint32)
+        last = (values >> 28 & 0x0F).astype(np.uint8)
     for numbers, view in views:
         place = view[: len(values)]
         place[:, :, :4].view("<u4")[:, :, 0] = words[:, numbers]

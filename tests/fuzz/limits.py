@@ -24,7 +24,7 @@ MOST_MEMORY = 1 << 30
 CODES = (0, 1, 2, 130)
 """Codes that an input may lead to; 3 is a mistake of ours."""
 
-SAID = ("apa: ", "FAIL  ", "not run  ")
+SAID = ("apa", "FAIL  ", "not run  ")
 """Begins what is said of bad input, by a command or of a scenario of a suite."""
 PROGRESS = re.compile(r": (\d+) of (\d+) runs")
 """What a study says while it goes on."""

@@ -189,13 +189,23 @@ def _named(name: str, count: int = 1) -> Callable[[zipfile.ZipFile], None]:
     return add
 
 
+def _odd(add: Callable[[zipfile.ZipFile], None]) -> Callable[[Path], None]:
+    """Return what writes an FMU with a file in the place of its library: it is unpacked, and not loaded."""
+
+    def change(archive: zipfile.ZipFile) -> None:
+        _text(archive)
+        add(archive)
+
+    return _with(change)
+
+
 def _patched(*changes: tuple[bytes, int, bytes]) -> Callable[[Path], None]:
     """Return what writes an FMU and then other bytes so far behind each place that begins with these."""
 
     def make(path: Path) -> None:
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("modelDescription.xml", DESCRIPTION.format(guid="good"))
-            archive.writestr("resources/a", "a text")
+            _text(archive)
         data = bytearray(path.read_bytes())
         for mark, offset, new in changes:
             at = data.find(mark)
@@ -227,22 +237,21 @@ def _content(data: bytes) -> Callable[[Path], None]:
 LOCAL, CENTRAL = b"PK\3\4", b"PK\1\2"
 """Begin the header of a file in an archive, and its line in the list at the end."""
 ODD_FILES: dict[str, Callable[[Path], None]] = {
-    "backslash": _with(_named("resources\\..\\..\\..\\evil.txt")),
-    "absolute": _with(_named("/tmp/apa-evil")),
-    "drive": _with(_named("C:/evil.txt")),
-    "dot": _with(_named("./resources/./x")),
-    "empty-name": _with(_named("")),
-    "zero-in-name": _with(_named("resources/a\0b")),
-    "control": _with(_named("resources/\33[2J\x9b31m")),
-    "device": _with(_special(stat.S_IFCHR)),
-    "fifo": _with(_special(stat.S_IFIFO)),
-    "socket": _with(_special(stat.S_IFSOCK)),
-    "described-twice": _with(_twice),
-    "same-name": _with(_same_name),
-    "long-name": _with(_named(f"resources/{'n' * 300}")),
-    "long-path": _with(_named(f"resources/{'n' * 200}" + f"/{'n' * 200}" * 30)),
-    "deep": _with(_named("resources/" + "d/" * 3000 + "x")),
-    "many-files": _with(_named("resources/{number}", 51_000)),
+    "backslash": _odd(_named("resources\\..\\..\\..\\evil.txt")),
+    "absolute": _odd(_named("/tmp/apa-evil")),
+    "drive": _odd(_named("C:/evil.txt")),
+    "dot": _odd(_named("./resources/./x")),
+    "zero-in-name": _odd(_named("resources/a\0b")),
+    "control": _odd(_named("resources/\33[2J\x9b31m")),
+    "device": _odd(_special(stat.S_IFCHR)),
+    "fifo": _odd(_special(stat.S_IFIFO)),
+    "socket": _odd(_special(stat.S_IFSOCK)),
+    "described-twice": _odd(_twice),
+    "same-name": _odd(_same_name),
+    "long-name": _odd(_named(f"resources/{'n' * 300}")),
+    "long-path": _odd(_named(f"resources/{'n' * 200}" + f"/{'n' * 200}" * 30)),
+    "deep": _odd(_named("resources/" + "d/" * 3000 + "x")),
+    "many-files": _odd(_named("resources/{number}", 51_000)),
     "encrypted": _patched((LOCAL, 6, b"\1\0"), (CENTRAL, 8, b"\1\0")),
     "unknown-method": _patched((LOCAL, 8, b"\x63\0"), (CENTRAL, 10, b"\x63\0")),
     "wrong-crc": _patched((LOCAL, 14, b"\1\2\3\4"), (CENTRAL, 16, b"\1\2\3\4")),

@@ -65,6 +65,9 @@ DECLARED = {
     "control character in a name": ('name="y"', 'name="y&#x9b;31m"'),
     "direction of writing in a unit": ('unit="u"', 'unit="u&#x202e;"'),
     "long unit": ('unit="u"', f'unit="{"u" * 5000}"'),
+    "long version": ('fmiVersion="3.0"', f'fmiVersion="{"3" * 5000}"'),
+    "long causality": ('causality="input"', f'causality="{"i" * 5000}"'),
+    "long factor": ('factor="2.0"', f'factor="{"f" * 5000}"'),
     "long token": ('instantiationToken="1"', f'instantiationToken="{"1" * 5000}"'),
     "start beyond 32 bits": (
         '<Enumeration name="mode" valueReference="2" causality="output"',
@@ -259,7 +262,7 @@ def test_every_odd_archive_is_a_line_or_an_fmu(name: str, tmp_path: Path) -> Non
         answer = ask(words, 60.0)
         assert not answer.mistake, answer.mistake
         assert answer.code in (1, 2)
-        said = [line for line in answer.err.splitlines() if "warning" not in line]
+        said = [line for line in answer.err.splitlines() if not line.startswith(("apa: warning", "apa: note"))]
         assert answer.code == 1 or len(said) == 1, answer.err
         assert len("".join(said)) < 1000
         assert not CONTROL.search(answer.err)
@@ -285,4 +288,4 @@ def test_every_attribute_of_a_description_with_every_odd_value(tmp_path: Path) -
                 if answer.mistake or long or CONTROL.search(answer.out + answer.err):
                     wrong.append((item.tag, key, value[:20], answer.mistake[-300:] or answer.err[:300]))
             item.set(key, before or "")
-    assert wrong == []
+    assert not wrong, "\n".join(map(str, wrong[:40]))

@@ -1,5 +1,6 @@
 """The errors a user can cause or meet, each one sentence that says what would be right."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 
@@ -110,6 +111,8 @@ MAX_COMPARED = 2000
 """Names that are compared letter by letter; the others may be suggested for their last part or for a part of them."""
 MAX_CHOICES = 8
 """Names that a message lists before it says how many more there are."""
+MOST_EXCERPT = 500
+"""Letters of another library's message."""
 MOST_LETTERS = 100
 """A word longer than this is like no other."""
 
@@ -124,3 +127,11 @@ def format_value(value: object) -> str:
     """Return a value for a message: as Python writes it, cut where it is long."""
     text = repr(value)
     return text if len(text) <= MOST_LETTERS else f"{text[:60]}... ({len(text)} letters)"
+
+
+def excerpt(error: object) -> str:
+    """Return in one line what another library says of a file, with the file's long words cut."""
+    lines = [line for line in str(error).splitlines() if line.strip()]
+    text = lines[0] if lines else type(error).__name__
+    cut = re.sub(f"\\S{{{MOST_LETTERS + 1},}}", lambda word: f"{word[0][:60]}... ({len(word[0])} letters)", text)
+    return cut if len(cut) <= MOST_EXCERPT else f"{cut[:MOST_EXCERPT]}... ({len(cut)} letters)"

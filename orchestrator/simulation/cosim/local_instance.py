@@ -21,7 +21,7 @@ from fmpy.fmi2 import (
 
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.inputs.text.errors import RESOURCES, NotRunError, RunError
+from orchestrator.inputs.text.errors import RESOURCES, NotRunError, RunError, excerpt
 from orchestrator.simulation.cosim.fmu_instance import Ports
 from orchestrator.simulation.cosim.model_description import (
     has_variable_step,
@@ -112,7 +112,7 @@ class LocalInstance:
         except RESOURCES:
             raise
         except Exception as error:
-            raise NotRunError(f"{self.path.name} cannot be loaded here: {error}") from error
+            raise NotRunError(f"{self.path.name} cannot be loaded here: {excerpt(error)}") from error
         self._callbacks = self._make_callbacks()
         try:
             self._instance.instantiate(callbacks=self._callbacks, loggingOn=True)

@@ -13,7 +13,7 @@ from lxml import etree
 from modelkit.model import Model
 from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
-from orchestrator.inputs.text.errors import BadInput, format_value
+from orchestrator.inputs.text.errors import BadInput, excerpt, format_value
 from orchestrator.inputs.text.quantities import MOST_WHOLE
 from orchestrator.simulation.cosim.declared import check_declared
 from orchestrator.simulation.cosim.fmu_instance import Ports, Scale
@@ -47,14 +47,14 @@ def read_description(path: Path) -> ModelDescription:
     except IndexError as error:
         raise BadInput("its ModelStructure has an index, or a reference, of no variable", file=path) from error
     except Exception as error:
-        raise BadInput(f"is not an FMU: {_first_line(error)}", file=path) from error
+        raise BadInput(f"is not an FMU: {excerpt(error)}", file=path) from error
     names = Counter(item.name for item in description.modelVariables)
     twice = next((name for name, count in names.items() if count > 1), None)
     if twice is not None:
         raise BadInput(f"is not an FMU: it has {names[twice]} variables called {format_value(twice)}", file=path)
     version = str(description.fmiVersion)
     if not version.startswith(("2.", "3.")):
-        raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0", file=path)
+        raise BadInput(f"is FMI {excerpt(version)}; expected FMI 2.0 or 3.0", file=path)
     if description.coSimulation is None:
         other = "Model Exchange" if description.modelExchange is not None else "Scheduled Execution"
         raise BadInput(f"is an FMU for {other} only; export it for Co-Simulation", file=path)
@@ -243,8 +243,3 @@ def _unit(scalar: ModelVariable) -> str | None:
     """Return the unit that an FMU declares of a variable, ``1`` for a dash; None if it declares none."""
     unit = scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or None
     return "1" if unit is not None and unit.strip() == "-" else unit
-
-
-def _first_line(error: Exception) -> str:
-    lines = str(error).splitlines()
-    return lines[0] if lines else type(error).__name__

@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from fmus.cache_paths import DIST
 from fmus.contents.archive import DATE
 from fmus.files import whole
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, excerpt, format_value
 
 BYTES_PER_GIB = 1 << 30
 MOST_PACKED, MOST_UNPACKED, MOST_DESCRIPTION, MOST_FILES = BYTES_PER_GIB, 2 * BYTES_PER_GIB, 1 << 26, 50_000
@@ -32,14 +32,16 @@ def check_archive(path: Path) -> list[str]:
         with zipfile.ZipFile(path) as archive:
             entries = archive.infolist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        raise BadInput(f"is not an FMU: {error}", file=path) from None
+        raise BadInput(f"is not an FMU: {excerpt(error)}", file=path) from None
     total = sum(entry.file_size for entry in entries)
     if total > MOST_UNPACKED or len(entries) > MOST_FILES:
         most = f"at most {_size(MOST_UNPACKED)} in {MOST_FILES} files"
         raise BadInput(f"is too large: unpacked {_size(total)} in {len(entries)} files, {most}", file=path)
     for entry in entries:
         if _leaves(entry):
-            raise BadInput(f"is not an FMU: {entry.filename!r} would be written outside its folder", file=path)
+            raise BadInput(
+                f"is not an FMU: {format_value(entry.filename)} would be written outside its folder", file=path
+            )
     names = [entry.filename for entry in entries]
     if DESCRIPTION not in names:
         raise BadInput(f"is not an FMU: there is no {DESCRIPTION} in it", file=path)
@@ -58,7 +60,7 @@ def pack(folder: Path) -> Path:
     files = {path.relative_to(folder).as_posix(): path for path in sorted(folder.rglob("*")) if not path.is_dir()}
     for name, path in files.items():
         if path.is_symlink() or not path.is_file():
-            raise BadInput(f"is not an FMU: {name} is no plain file", file=folder)
+            raise BadInput(f"is not an FMU: {format_value(name)} is no plain file", file=folder)
     total = sum(path.stat().st_size for path in files.values())
     if total > MOST_UNPACKED or len(files) > MOST_FILES:
         most = f"at most {_size(MOST_UNPACKED)} in {MOST_FILES} files"

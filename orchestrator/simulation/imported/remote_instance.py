@@ -23,7 +23,7 @@ import numpy as np
 from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.inputs.text.errors import RESOURCES, NotRunError, RunError
+from orchestrator.inputs.text.errors import RESOURCES, NotRunError, RunError, excerpt
 from orchestrator.inputs.text.printable import printable
 from orchestrator.inputs.text.quantities import MOST_WHOLE
 from orchestrator.simulation.cosim.fmu_instance import Indices, Ports
@@ -118,7 +118,7 @@ class RemoteInstance:
         except RESOURCES:
             raise
         except Exception as error:
-            raise NotRunError(f"{self.path.name} cannot be unpacked: {error}") from error
+            raise NotRunError(f"{self.path.name} cannot be unpacked: {excerpt(error)}") from error
         place = self._folder / "fmu" / library
         self._shared = SharedNumbers(self._folder, len(self._in.order), len(self._out.order))
         try:

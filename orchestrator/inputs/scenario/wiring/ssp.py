@@ -8,7 +8,7 @@ from fmus.files import write_whole
 from fmus.systems.fmu_facts import BASE, UnitScale
 from fmus.systems.read_ssp import SspError, SspSystem, as_written, fmu_in, read_ssp
 from orchestrator.inputs.scenario.models import MODELS
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, excerpt
 
 SUFFIX = ".ssp"
 TARGET = tuple(f"target.{name}" for name in ("x", "y", "heading"))
@@ -67,11 +67,11 @@ def _read(path: Path) -> SspSystem:
     try:
         return read_ssp(path)
     except (SspError, ValueError) as error:
-        raise BadInput(str(error), file=path) from None
+        raise BadInput(excerpt(error), file=path) from None
 
 
 def _fmu(path: Path, source: str) -> bytes:
     try:
         return fmu_in(path, source)
     except SspError as error:
-        raise BadInput(str(error), file=path) from None
+        raise BadInput(excerpt(error), file=path) from None

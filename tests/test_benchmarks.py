@@ -38,6 +38,7 @@ def test_bodies(bench: Any) -> None:
     assert len({run(100) for _, run in module.vehicles(library, 0).values()}) == 3
 
 
+@pytest.mark.release
 @pytest.mark.filterwarnings("ignore")
 def test_controllers(bench: Any) -> None:
     module = bench("bench_controllers", "cvxpy", "daqp", "osqp", "skfuzzy")

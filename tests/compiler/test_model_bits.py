@@ -17,7 +17,7 @@ SCENARIOS = {
     "apa-parallel-walls": (),
     "zhang2022-double-track": ("stop_time=10",),
     "hsic-straight": ("stop_time=12",),
-    "preview": ("stop_time=3",),
+    "preview": ("stop_time=1.5",),
     "adaptive": (),
     "fault-pose-nan": (),
 }

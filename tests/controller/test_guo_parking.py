@@ -174,7 +174,7 @@ def test_a_car_that_never_stands_at_first_is_not_waited_for_for_ever() -> None:
 numbers = st.one_of(st.floats(-100.0, 100.0), st.floats(), st.sampled_from([0.0, math.nan, math.inf, 1e300]))
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(data=st.data())
 def test_no_input_raises_or_gives_nan(data: st.DataObject) -> None:
     known = variables(CONTROLLER.inputs)
@@ -196,7 +196,7 @@ def test_no_input_raises_or_gives_nan(data: st.DataObject) -> None:
 inside = st.floats(0.02, 0.98)
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(data=st.data())
 def test_no_parameter_in_range_raises(data: st.DataObject) -> None:
     changes: dict[str, Any] = {}

@@ -192,9 +192,10 @@ def test_value_references_are_those_of_the_whole_controller() -> None:
 
 
 @pytest.fixture(scope="module")
-def python_systems(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def python_system(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The function from a system to its PythonFMU, built once."""
     folder = tmp_path_factory.mktemp("python_systems")
-    return {system: python_fmu.build(model, folder) for system, model in SYSTEM_MODELS.items()}
+    return cache(lambda system: python_fmu.build(SYSTEM_MODELS[system], folder))
 
 
 @pytest.fixture(scope="module")
@@ -203,10 +204,11 @@ def native_apa() -> Any:
 
 
 @some
-def test_checkers_find_nothing(python_systems: Any, system: Any) -> None:
-    check(python_systems[system])
+def test_checkers_find_nothing(python_system: Any, system: Any) -> None:
+    check(python_system(system))
 
 
+@pytest.mark.release
 def test_checkers_find_nothing_in_a_native_one(native_apa: Any) -> None:
     check(native_apa)
 
@@ -220,10 +222,11 @@ def check(path: Any) -> None:
 
 
 @some
-def test_it_gives_the_bits_of_the_whole_controller(python_systems: Any, system: Any) -> None:
-    twin(python_systems[system], system)
+def test_it_gives_the_bits_of_the_whole_controller(python_system: Any, system: Any) -> None:
+    twin(python_system(system), system)
 
 
+@pytest.mark.release
 def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa: Any) -> None:
     twin(native_apa, System.APA)
 
@@ -246,12 +249,12 @@ def twin(path: Any, system: Any) -> None:
             assert host.step(number * 0.01, 0.01) == OK
 
 
-def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_systems: Any) -> None:
+def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_system: Any) -> None:
     hidden = next(item for item in fmi_variables(APA) if item.name == "guo2015.k1")
-    with Host(python_systems[System.APA]) as host:
+    with Host(python_system(System.APA)) as host:
         host.fmu.getReal([hidden.vr])
         assert host.log[-1][0] == ERROR
-    with Host(python_systems[System.APA]) as host:
+    with Host(python_system(System.APA)) as host:
         host.fmu.setReal([hidden.vr], [2.0])
         assert host.log[-1][0] == ERROR
 
@@ -264,5 +267,6 @@ def test_apa_build_makes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "did you mean apa" in capsys.readouterr().err
 
 
+@pytest.mark.release
 def test_a_scenario_passes_with_it(native_apa: Any, tmp_path: Path) -> None:
     assert main(["test", "apa-parallel", "--controller", str(native_apa), "--out", str(tmp_path)]) == 0

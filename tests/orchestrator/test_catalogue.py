@@ -201,8 +201,9 @@ def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
         assert markdown(judge_standards([f"catalogue/{name}"], bench, tmp_path / name)) in page()
 
 
+@pytest.mark.release
 @compiled
-def test_somebody_elses_controller_is_judged_by_what_it_puts_out(tmp_path: Path) -> None:
+def test_a_third_party_controller_is_judged_by_what_it_puts_out(tmp_path: Path) -> None:
     """Our own as a foreign FMU meets what it meets otherwise; one that crashes misses what it is run for."""
     catalogue = Catalogue(["catalogue/iso16787"])
     foreign = ImportedFmus({"controller": fmu_files("native", lambda text: None)["controller"]})

@@ -93,7 +93,7 @@ def test_these_runs_are_parked_within_gbt_with_all_corners_found() -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("number", PLAIN)
+@pytest.mark.parametrize("number", [62, pytest.param(658, marks=pytest.mark.release)])
 def test_a_run_is_the_same_in_plain_python(number: int) -> None:
     chosen = study_of([cases()[number], cases()[0]])
     job = make_job(chosen)

@@ -63,7 +63,7 @@ def assert_same(job: Any, chunk: Any, rows: Any, number: Any, kind: str = "nativ
 def test_rows_equal_the_python_master(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     rows = run_batch(job, chunk)
-    for number in some(len(rows), 12):
+    for number in some(len(rows), 4):
         assert_same(job, chunk, rows, number, "none")
     assert len(set(judge(job, truths(job, chunk), rows).reason)) > 3
 

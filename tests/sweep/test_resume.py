@@ -23,12 +23,12 @@ scenario: guo2015-case4
 runs:
   grid: {controller.system: [ntbpt, ntbptcwpt]}
   latin_hypercube:
-    n: 600
+    n: 300
     "vehicle.driver.profile[1].speed": {uniform: [2 km/h, 2.0]}
     vehicle.start.y: {uniform: [-10 cm, 10 cm]}
 """
-COUNT = 1200
-CHUNK = 20
+COUNT = 600
+CHUNK = 10
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +111,7 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
 
 def test_a_study_may_be_finished_by_another_engine(study: Any, tmp_path: Path) -> None:
     small = tmp_path / "trial.yaml"
-    small.write_text(study.read_text().replace("n: 600", "n: 2"))
+    small.write_text(study.read_text().replace("n: 300", "n: 2"))
     common = ["sweep", str(small), "--no-page", "--chunk", "2", "--out"]
     assert main([*common, str(tmp_path / "batch")]) == 0
     assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0
@@ -142,7 +142,7 @@ def test_any_row_can_be_replayed_with_the_same_bits(
 
 
 def test_a_row_can_be_replayed_on_fmus(whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["replay", str(whole), "--row", "700", "--out", str(tmp_path), "--no-page", "--fmus", "python"])
+    main(["replay", str(whole), "--row", "350", "--out", str(tmp_path), "--no-page", "--fmus", "python"])
     assert "same bits as in the table" in capsys.readouterr().out
 
 

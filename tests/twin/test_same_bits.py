@@ -35,6 +35,7 @@ LIKE_OTHERS = (
     *("preview-8", "preview-18", "preview-geometry", "preview-printed"),
     *("apa-parallel-real", "apa-no-slot", "apa-search-too-fast", "apa-takeover", "apa-slot-too-short"),
     *("guo2015-case1-cwpt", "guo2015-case4-105", "hsic", "hsic-driven-past", "zhang2022-pid"),
+    *("adaptive-ahead", "apa-choose", "apa-external-slot", "apa-pedestrian", "cicap-object-in-slot"),
 )
 """Other numbers of a scenario below, through the same branches of the models (all but 4 of 7,080); tests/golden
 has their ends, `make release` the bits."""

@@ -1,7 +1,6 @@
 """The valet drives: slots from outside, things in the way, reasons to give up; in C as in CPython."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -137,9 +136,9 @@ def test_a_fault_ends_it_with_its_reason(changed: Any, reason: Any) -> None:
 class Twin(ModelInstance):
     """The valet in CPython, and in C beside it, which must not differ."""
 
-    def __init__(self, name: Any, model: Any, parameters: Any, folder: Any) -> None:
+    def __init__(self, name: Any, model: Any, parameters: Any, twin: CModel) -> None:
         super().__init__(name, model, parameters)
-        self.c = CModel(model, translate(model), folder)
+        self.c = twin
         self.differing: set[str] = set()
 
     def initialize(self, stop_ns: Any) -> None:
@@ -152,6 +151,11 @@ class Twin(ModelInstance):
         self.differing |= set(self.c.differing(self._state, self.output))
 
 
+@pytest.fixture(scope="module")
+def valet_in_c(tmp_path_factory: pytest.TempPathFactory) -> CModel:
+    return CModel(VALET, translate(VALET), tmp_path_factory.mktemp("c"))
+
+
 @pytest.mark.parametrize(
     ("name", "stop"),
     [
@@ -161,14 +165,14 @@ class Twin(ModelInstance):
     ],
 )
 def test_a_drive_in_c_has_the_bits_of_cpython(
-    name: str, stop: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, stop: float, valet_in_c: CModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     twins = []
 
     def make(name: Any, model: Any, parameters: Any) -> Any:
         if model is not VALET:
             return ModelInstance(name, model, parameters)
-        twins.append(Twin(name, model, parameters, tmp_path))
+        twins.append(Twin(name, model, parameters, valet_in_c))
         return twins[-1]
 
     monkeypatch.setattr("orchestrator.session.session.ModelInstance", make)

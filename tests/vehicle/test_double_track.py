@@ -183,6 +183,7 @@ def _parking_path(h: float) -> list[Pose]:
     return path
 
 
+@pytest.mark.release
 def test_halving_the_step_changes_a_60_s_parking_path_by_under_1_mm() -> None:
     paths = [_parking_path(0.001), _parking_path(0.0005)]
     worst = max(math.dist((a.x, a.y), (b.x, b.y)) for a, b in zip(*paths, strict=True))

@@ -73,6 +73,8 @@ class Condition(IntEnum):
     """Standing in the slot, and no path leads nearer to the goal."""
     GOAL_KNOWN = 17
     """No slot is searched: the vehicle sets out at once."""
+    RESUMED = 18
+    """Switched on again at standstill near the slot that the vehicle was driven into."""
 
 
 def _row(source: ParkingState, condition: Condition, target: ParkingState) -> TransitionRow:
@@ -89,6 +91,7 @@ def _aborts(source: ParkingState) -> tuple[TransitionRow, TransitionRow, Transit
 
 TRANSITIONS: tuple[TransitionRow, ...] = (
     _row(ParkingState.STANDBY, Condition.GOAL_KNOWN, ParkingState.PLANNING),
+    _row(ParkingState.STANDBY, Condition.RESUMED, ParkingState.CONFIRMING),
     _row(ParkingState.STANDBY, Condition.SWITCHED_ON, ParkingState.SEARCHING),
     _row(ParkingState.SEARCHING, Condition.SWITCHED_OFF, ParkingState.STANDBY),
     _row(ParkingState.SEARCHING, Condition.FAULT, ParkingState.FAILED),

@@ -10,7 +10,10 @@ from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outl
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.map.visibility import predict_range
+from controller_fmu.parking.measurement.cycle import seconds
+from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point
+from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, SensorPose, reading_status, sensor_pose
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
     REMEMBERED,
@@ -24,6 +27,7 @@ from controller_fmu.parking.obstacle_map import (
     without_inside,
 )
 from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.perception import planar_distance
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
     PlanningStatus,
@@ -48,7 +52,76 @@ FRONT_SENSORS = (1, 2)
 
 def begin_plan(memory: ParkingMemory) -> ParkingMemory:
     """Return the memory with a new plan due; the first sample at standstill makes its request."""
-    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False, is_relaxed=False))
+    plan = memory.plan._replace(steps=0, is_found=False, is_relaxed=False, failure=Reason.NONE)
+    return memory._replace(plan=plan)
+
+
+def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory of a vehicle that has no path: planned again once something has gone, else the reason."""
+    if seconds(memory.perception.time - memory.plan.failed_at) > params.monitor.wait:
+        return memory._replace(reason=memory.plan.failure)
+    before = known_obstacles(memory)
+    memory = forget_what_left(memory, inputs, params)
+    if known_obstacles(memory) < before:
+        return begin_plan(memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1)))
+    return memory
+
+
+def known_obstacles(memory: ParkingMemory) -> int:
+    """Return how many landmarks and remembered echoes there are."""
+    count = 0
+    for number in range(LANDMARKS):
+        if memory.perception.local_map.landmarks[number].type != LandmarkType.NONE:
+            count += 1
+    for number in range(REMEMBERED):
+        if memory.perception.remembered[number].is_present:
+            count += 1
+    return count
+
+
+def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory without landmarks through which a sensor at rest measures, in the middle of its cone.
+
+    An object that left a slot had come between the cones of two sensors: neither has all of its landmark in view.
+    """
+    perception = memory.perception
+    if not perception.cycle.is_new:
+        return memory
+    landmarks = perception.local_map.landmarks
+    remembered = perception.remembered
+    echoes = perception.echoes
+    sensors = params.car.ultrasonic
+    for number in range(SENSORS):
+        reading = perception.cycle.readings[number]
+        status = reading_status(reading, sensors)
+        if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
+            middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
+            limit = reading - params.monitor.unexplained
+            landmarks = tuple(_contradicted(landmarks[place], middle, limit, params) for place in range(LANDMARKS))
+            remembered = tuple(_still_there(remembered[place], middle, limit) for place in range(REMEMBERED))
+            own = echoes[number]
+            if own.is_present and planar_distance(own.x, own.y, middle.x, middle.y) < limit:
+                echoes = echoes[:number] + (EchoObstacle(),) + echoes[number + 1 :]
+    return memory._replace(
+        perception=perception._replace(
+            local_map=perception.local_map._replace(landmarks=landmarks),
+            remembered=remembered,
+            echoes=echoes,
+        )
+    )
+
+
+def _still_there(echo: EchoObstacle, sensor: SensorPose, limit: float) -> EchoObstacle:
+    """Return an echo unless a sensor measured at least ``limit`` [m] through it."""
+    return EchoObstacle() if predicted_range_to_point(sensor, echo.x, echo.y).distance < limit else echo
+
+
+def _contradicted(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
+    """Return a landmark after a sensor measured at least ``limit`` [m]; none after enough of that."""
+    if landmark.type == LandmarkType.NONE or predict_range(sensor, landmark).distance > limit:
+        return landmark
+    count = landmark.contradictions + 1
+    return Landmark() if count >= params.mapping.contradictions else landmark._replace(contradictions=count)
 
 
 def continue_plan(
@@ -57,6 +130,8 @@ def continue_plan(
     """Return the memory after some steps of the path search; the vehicle stands."""
     if abs(inputs.measured_speed) > params.threshold.standstill or memory.plan.is_found:
         return memory
+    if memory.plan.failure != Reason.NONE:
+        return wait_for_change(memory, inputs, params)
     if memory.plan.steps == 0:
         memory = _with_request(memory, inputs, params)
     plan = memory.plan
@@ -87,6 +162,8 @@ def without_path(
     """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
     if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, params):
         return memory._replace(plan=memory.plan._replace(is_final=True))
+    if memory.progress.direction != 0.0 and reason != Reason.LEFT_PATH:
+        return memory._replace(plan=memory.plan._replace(failure=reason, failed_at=memory.perception.time))
     return memory._replace(reason=reason)
 
 

@@ -43,7 +43,7 @@ class ParkingSystemInput(NamedTuple):
     ] = (5.0,) * 12
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
-    gear: GearShown = Gear.PARK
+    gear: GearShown = Gear.DRIVE
     brake_pedal: BrakePedal = 0.0
     external_slot: Annotated[ExternalSlot, Group("a slot from outside: a camera, a map, a test bench")] = ExternalSlot()
     driver_selection: Annotated[DriverSelection, Group("selection by the driver on the display")] = DriverSelection()

@@ -31,7 +31,11 @@ class SearchProgress(NamedTuple):
     rejected: int = Reason.NONE
     """Why the last candidate was not taken."""
     pose: Pose = Pose()
-    """Where the slot was shown."""
+    """Where the slot was shown first."""
+    stand: Pose = Pose()
+    """Where it is shown now: elsewhere if the driver switched the system on again."""
+    resumes: bool = False
+    """The vehicle was driven into the slot before the system was switched off."""
     offered: tuple[SlotCandidate, ...] = (SlotCandidate(),) * MAX_OFFERS
     """Slots that the driver may choose, the newest first."""
     shown: int = 0
@@ -53,6 +57,10 @@ class PlanProgress(NamedTuple):
     is_found: bool = False
     is_relaxed: bool = False
     """The goal was blocked by what was measured inside the gap: planned between the slot's own limits alone."""
+    failure: int = Reason.NONE
+    """No path leads on from where the vehicle was on its way: it waits for a change of the map."""
+    failed_at: int = 0
+    """Since then [ns]."""
     is_final: bool = False
     """No plan brings the vehicle nearer to its goal, and it stands in the slot."""
 

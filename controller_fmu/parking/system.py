@@ -9,6 +9,7 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import (
+    PathProgress,
     is_at_end,
     next_segment,
     profile_speed,
@@ -21,6 +22,7 @@ from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.silent_sensor import silent_sensors
 from controller_fmu.parking.monitor.collision_monitor import (
+    EchoObstacle,
     MonitorVerdict,
     VehicleMotion,
     monitor_collision,
@@ -33,10 +35,18 @@ from controller_fmu.parking.monitor.fault_monitor import (
     advance_clocks,
     fault_reason,
     input_fault,
+    is_taken_over,
 )
-from controller_fmu.parking.obstacle_map import remember_echoes
+from controller_fmu.parking.obstacle_map import REMEMBERED, remember_echoes
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.path_planning import begin_plan, continue_plan, is_acceptable, max_manoeuvres, slot_in_map
+from controller_fmu.parking.path_planning import (
+    begin_plan,
+    continue_plan,
+    forget_what_left,
+    is_acceptable,
+    max_manoeuvres,
+    slot_in_map,
+)
 from controller_fmu.parking.perception import (
     chosen_number,
     is_driving_state,
@@ -48,16 +58,19 @@ from controller_fmu.parking.perception import (
 )
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
 from modelkit.maths import clamp, sign, wrap_angle
+from modelkit.vocabulary import Pose
 
 REPLAN_TIME = 0.3
 """Blocked by the map the vehicle plans again after this time [s]: seven measurement cycles at standstill."""
 MAX_SILENT_SENSORS = 2
 """With more the surroundings are unknown on one side at least: a bumper has four sensors, a flank two."""
+MAX_RESUME_DISTANCE = 12.0
+"""A slot is shown again up to this distance [m]: odometry drifts by 2 % of it, a quarter of a metre."""
 DRIVEN_ON = 0.3
 """A vehicle that has moved by more than this [m] since the slot was shown was driven on by its driver."""
 
@@ -67,9 +80,11 @@ def parking_sample(
 ) -> ParkingMemory:
     """Return the memory one sample of ``dt_ns`` later."""
     state = memory.state
-    perceives = state not in (ParkingState.STANDBY, ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
+    is_off = state in (ParkingState.STANDBY, ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
+    perceives = not is_off or is_slot_kept(memory)
     if perceives and input_fault(inputs) == Reason.NONE:
         memory = perceive(memory, inputs, params, dt_ns)
+        memory = forget_what_left(memory, inputs, params) if is_off else memory
     if state == ParkingState.SEARCHING:
         memory = search_slots(memory, inputs, params, dt_ns)
         memory = memory._replace(reason=_search_fault(memory, inputs, params))
@@ -78,7 +93,7 @@ def parking_sample(
         memory = memory._replace(search=memory.search._replace(waited=memory.search.waited + dt_ns))
     elif is_driving_state(state):
         memory = _drive(memory, inputs, params)
-    if perceives and state != ParkingState.SEARCHING:
+    if not is_off and state != ParkingState.SEARCHING:
         memory = _watch(memory, inputs, params, dt_ns)
     conditions = conditions_of(memory, inputs, params)
     return enter_state(memory, next_parking_state(state, conditions), inputs, params)
@@ -159,15 +174,17 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     """Return the bits of what the driver does, and of what the search and the planner have found for the driver."""
     search = memory.search
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
-    moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
+    moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.stand.x, search.stand.y)
+    is_resumed = search.resumes and standing and inputs.apa_switch and is_near_slot(memory, inputs.odometry)
     planned = memory.plan.is_found
     searches = params.search.active
     is_another = not search.slot.is_external and chosen_number(search.offered, inputs.driver_selection) != search.shown
     return (
         bit(Condition.GOAL_KNOWN, not searches)
-        | bit(Condition.SWITCHED_ON, inputs.apa_switch)
+        | bit(Condition.RESUMED, is_resumed)
+        | bit(Condition.SWITCHED_ON, inputs.apa_switch and searches and not is_resumed)
         | bit(Condition.SWITCHED_OFF, searches and not inputs.apa_switch)
-        | bit(Condition.TAKEN_OVER, inputs.driver_takeover)
+        | bit(Condition.TAKEN_OVER, is_taken_over(memory.clocks, inputs))
         | bit(Condition.FAULT, memory.reason != Reason.NONE and memory.state != ParkingState.CONFIRMING)
         | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
         | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
@@ -226,10 +243,10 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     context = FollowingContext(params.car, params.drive)
     if state == ParkingState.SEARCHING and before != ParkingState.SEARCHING:
         memory = _begin_search(memory, before)
+    if state == ParkingState.STANDBY and before != ParkingState.STANDBY:
+        memory = memory._replace(search=memory.search._replace(resumes=is_slot_kept(memory)))
     if state == ParkingState.CONFIRMING and before != ParkingState.CONFIRMING:
-        slot_filter = begin_slot_filter(memory.search.slot)
-        search = memory.search._replace(pose=inputs.odometry, waited=0, slot_filter=slot_filter)
-        memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
+        memory = begin_plan(_with_slot_shown(memory, inputs.odometry))
     if state == ParkingState.PLANNING and before == ParkingState.STANDBY:
         memory = memory._replace(strategy=Strategy.POSE)
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
@@ -245,6 +262,39 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         memory = memory._replace(progress=set_out(memory.progress))
     memory = memory._replace(state=state)
     return _request(memory, context, params)
+
+
+def is_slot_kept(memory: ParkingMemory) -> bool:
+    """Return whether the vehicle was on its way into a slot, which may be shown again."""
+    is_over = memory.state in (ParkingState.FAILED, ParkingState.TAKEOVER)
+    was_driven = is_over and memory.strategy == Strategy.SLOT and memory.progress.direction != 0.0
+    return memory.search.slot.type != SlotType.NONE and (was_driven or memory.search.resumes)
+
+
+def is_near_slot(memory: ParkingMemory, pose: Pose) -> bool:
+    """Return whether a vehicle at ``pose`` is so near to the slot that its place is still known."""
+    slot = memory.search.slot
+    corner = row_point(slot.row, slot.behind.end, slot.front)
+    return planar_distance(pose.x, pose.y, corner.x, corner.y) < MAX_RESUME_DISTANCE
+
+
+def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
+    """Return the memory of a vehicle at ``pose`` that is shown a slot, found now or driven into before."""
+    search = memory.search._replace(stand=pose, waited=0)
+    if not search.resumes:
+        search = search._replace(pose=pose, slot_filter=begin_slot_filter(search.slot))
+    search = search._replace(resumes=False)
+    perception = memory.perception._replace(remembered=(EchoObstacle(),) * REMEMBERED)
+    return memory._replace(
+        strategy=Strategy.SLOT,
+        reason=Reason.NONE,
+        search=search,
+        perception=perception,
+        plan=PlanProgress(),
+        progress=PathProgress(stop_correction=memory.progress.stop_correction),
+        verdict=MonitorVerdict(),
+        clocks=FaultClocks(steering=memory.clocks.steering),
+    )
 
 
 def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:

@@ -21,8 +21,6 @@ SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
 OTHERWISE = frozenset(
     {
-        "apa-driver-brakes",
-        "apa-driver-grabs",
         "apa-over-speed",
         "apa-parallel-deep",
         "apa-pedestrian",
@@ -32,11 +30,9 @@ OTHERWISE = frozenset(
         "apa-resume",
         "apa-sensor-loss",
         "apa-slot-too-short",
-        "apa-switched-on-again",
         "cicap-pillar",
         "valet-search-45",
         "valet-search-60",
-        "valet-switched-on-again",
         "valet-external-slot",
     }
 )

@@ -1,13 +1,43 @@
 """The fault monitor: each quantity that must not last has a clock [ns]; a clock that runs out is a reason to fail."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from controller_fmu.common.monitor import is_unmoved, is_usable_input
 from controller_fmu.common.params import LimitParams
 from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason, SensedWithFault
 from controller_fmu.parking.measurement.cycle import seconds
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import Gear, Pose
+
+SETTLING_TIME = 0.3
+"""The driver's foot leaves the pedal within this time [s] after the system took over."""
+MAX_PEDAL = 0.2
+"""A foot that rests on the brake pedal presses it by less than this."""
+MAX_SHIFT_SPEED = 0.2
+"""The gearbox itself passes neutral at a lower speed [m/s]."""
+PULL_ANGLE = 0.3
+PULL_TIME = 0.2
+"""A driver turns the wheel away from a request that is off by more than this [rad], for longer than this [s]."""
+
+
+class DriverControls(Protocol):
+    """What the driver does, and the speed."""
+
+    @property
+    def measured_speed(self) -> float:
+        """[m/s]"""
+
+    @property
+    def driver_takeover(self) -> bool:
+        """Signal of the vehicle."""
+
+    @property
+    def gear(self) -> int:
+        """Selector position."""
+
+    @property
+    def brake_pedal(self) -> float:
+        """From 0 to 1."""
 
 
 class ExpectedMotion(NamedTuple):
@@ -67,6 +97,16 @@ def advance_clocks(
         steering=steering,
         pose=inputs.odometry,
     )
+
+
+def is_taken_over(clocks: FaultClocks, inputs: DriverControls) -> bool:
+    """Return whether the driver has taken over: by signal, brake pedal, gear selector or steering wheel."""
+    is_settled = seconds(clocks.running) > SETTLING_TIME
+    is_braked = inputs.brake_pedal > MAX_PEDAL
+    is_out_of_gear = inputs.gear in (Gear.PARK, Gear.NEUTRAL) and abs(inputs.measured_speed) > MAX_SHIFT_SPEED
+    wheel = clocks.steering
+    is_pulled = abs(wheel.request - wheel.angle) > PULL_ANGLE and seconds(wheel.away_ns) > PULL_TIME
+    return inputs.driver_takeover or (is_settled and (is_braked or is_out_of_gear)) or is_pulled
 
 
 def input_fault(inputs: SensedWithFault) -> int:

@@ -1,0 +1,88 @@
+"""The driver takes over and resumes; what left the slot is forgotten while the vehicle waits."""
+
+import pytest
+
+from controller_fmu.common.steering_monitor import SteeringMonitorState
+from controller_fmu.parking.chart import Condition, ParkingState, next_parking_state
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.local_map import LandmarkMap
+from controller_fmu.parking.measurement.cycle import MeasurementCycle
+from controller_fmu.parking.monitor.fault_monitor import FaultClocks, is_taken_over
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.path_planning import forget_what_left, known_obstacles
+from controller_fmu.parking.signals import ParkingSystemInput
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
+from controller_fmu.parking.system import conditions_of, enter_state
+from modelkit.vocabulary import Gear, Pose
+
+PARAMS = ParkingParams()
+SLOT = SlotCandidate(type=SlotType.PARALLEL)
+SECOND = 1_000_000_000
+PULLED = SteeringMonitorState(request=1.0, angle=0.5, away_ns=SECOND // 4)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "clocks", "taken"),
+    [
+        (ParkingSystemInput(), FaultClocks(running=SECOND), False),
+        (ParkingSystemInput(driver_takeover=True), FaultClocks(), True),
+        (ParkingSystemInput(brake_pedal=0.5), FaultClocks(running=SECOND), True),
+        (ParkingSystemInput(brake_pedal=0.5), FaultClocks(running=SECOND // 10), False),
+        (ParkingSystemInput(brake_pedal=0.1), FaultClocks(running=SECOND), False),
+        (ParkingSystemInput(gear=Gear.NEUTRAL, measured_speed=-0.5), FaultClocks(running=SECOND), True),
+        (ParkingSystemInput(gear=Gear.NEUTRAL), FaultClocks(running=SECOND), False),
+        (ParkingSystemInput(), FaultClocks(steering=PULLED), True),
+        (ParkingSystemInput(), FaultClocks(steering=PULLED._replace(request=0.6)), False),
+        (ParkingSystemInput(), FaultClocks(steering=PULLED._replace(away_ns=SECOND // 10)), False),
+    ],
+)
+def test_pedal_gear_and_wheel_are_a_takeover(inputs: ParkingSystemInput, clocks: FaultClocks, taken: bool) -> None:
+    assert is_taken_over(clocks, inputs) == taken
+
+
+def switched_off_after(state: ParkingState, direction: float) -> ParkingMemory:
+    """Return the memory in standby of a vehicle at the origin that drove (-1, 1) or not (0) before ``state``."""
+    memory = ParkingMemory(state=state, search=SearchProgress(slot=SLOT, stand=Pose(20.0, 0.0, 0.0)), reason=3)
+    memory = memory._replace(progress=memory.progress._replace(direction=direction))
+    return enter_state(memory, ParkingState.STANDBY, ParkingSystemInput(), PARAMS)
+
+
+@pytest.mark.parametrize(
+    ("state", "direction", "pose", "speed", "resumed"),
+    [
+        (ParkingState.TAKEOVER, -1.0, Pose(), 0.0, True),
+        (ParkingState.FAILED, 1.0, Pose(5.0, 0.0, 0.0), 0.0, True),
+        (ParkingState.FAILED, 0.0, Pose(), 0.0, False),
+        (ParkingState.PARKED, -1.0, Pose(), 0.0, False),
+        (ParkingState.TAKEOVER, -1.0, Pose(13.0, 0.0, 0.0), 0.0, False),
+        (ParkingState.TAKEOVER, -1.0, Pose(), 0.5, False),
+    ],
+)
+def test_a_slot_driven_into_is_shown_again(
+    state: ParkingState, direction: float, pose: Pose, speed: float, resumed: bool
+) -> None:
+    memory = switched_off_after(state, direction)
+    inputs = ParkingSystemInput(apa_switch=True, odometry=pose, measured_speed=speed)
+    after = next_parking_state(memory.state, conditions_of(memory, inputs, PARAMS))
+    assert after == (ParkingState.CONFIRMING if resumed else ParkingState.SEARCHING)
+    if resumed:
+        memory = enter_state(memory, after, inputs, PARAMS)
+        assert (memory.search.slot, memory.reason, memory.progress.direction) == (SLOT, 0, 0.0)
+        assert not conditions_of(memory, inputs, PARAMS) >> Condition.DRIVEN_ON & 1
+
+
+def test_what_left_is_forgotten_and_what_stands_is_not() -> None:
+    """A surface 1 m behind the car, half of it beyond the cone of sensor 6."""
+    mount = PARAMS.car.ultrasonic.mounts[5]
+    x, y = mount.x - 1.0, mount.y
+    surface = Landmark(LandmarkType.SEGMENT, x, y, 0.5 * 3.141592653589793, start=0.0, end=0.8, confirmations=9)
+    local_map = LandmarkMap(landmarks=(surface, *(Landmark(),) * (LANDMARKS - 1)))
+    for reading, left in ((1.0, 1), (3.0, 0), (5.0, 0)):
+        readings = tuple(reading if number == 5 else 0.5 for number in range(12))
+        cycle = MeasurementCycle(readings=readings, is_new=True)
+        memory = ParkingMemory(perception=Perception(cycle=cycle, local_map=local_map))
+        for repeated in range(PARAMS.mapping.contradictions):
+            assert known_obstacles(memory) == 1, f"after {repeated} readings"
+            memory = forget_what_left(memory, ParkingSystemInput(), PARAMS)
+        assert known_obstacles(memory) == left

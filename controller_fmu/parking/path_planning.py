@@ -60,14 +60,14 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
     """Return the memory of a vehicle that has no path: planned again once something has gone, else the reason."""
     if seconds(memory.perception.time - memory.plan.failed_at) > params.monitor.wait:
         return memory._replace(reason=memory.plan.failure)
-    before = known_obstacles(memory)
+    before = obstacle_count(memory)
     memory = forget_what_left(memory, inputs, params)
-    if known_obstacles(memory) < before:
+    if obstacle_count(memory) < before:
         return begin_plan(memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1)))
     return memory
 
 
-def known_obstacles(memory: ParkingMemory) -> int:
+def obstacle_count(memory: ParkingMemory) -> int:
     """Return how many landmarks and remembered echoes there are."""
     count = 0
     for number in range(LANDMARKS):
@@ -97,7 +97,7 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
         if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
             middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
             limit = reading - params.monitor.unexplained
-            landmarks = tuple(_contradicted(landmarks[place], middle, limit, params) for place in range(LANDMARKS))
+            landmarks = tuple(contradict_at_rest(landmarks[place], middle, limit, params) for place in range(LANDMARKS))
             remembered = tuple(_still_there(remembered[place], middle, limit) for place in range(REMEMBERED))
             own = echoes[number]
             if own.is_present and planar_distance(own.x, own.y, middle.x, middle.y) < limit:
@@ -116,7 +116,7 @@ def _still_there(echo: EchoObstacle, sensor: SensorPose, limit: float) -> EchoOb
     return EchoObstacle() if predicted_range_to_point(sensor, echo.x, echo.y).distance < limit else echo
 
 
-def _contradicted(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
+def contradict_at_rest(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
     """Return a landmark after a sensor measured at least ``limit`` [m]; none after enough of that."""
     if landmark.type == LandmarkType.NONE or predict_range(sensor, landmark).distance > limit:
         return landmark

@@ -9,7 +9,7 @@ from controller_fmu.parking.map.local_map import LandmarkMap
 from controller_fmu.parking.measurement.cycle import MeasurementCycle
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks, is_taken_over
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.path_planning import forget_what_left, known_obstacles
+from controller_fmu.parking.path_planning import forget_what_left, obstacle_count
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
@@ -83,6 +83,6 @@ def test_what_left_is_forgotten_and_what_stands_is_not() -> None:
         cycle = MeasurementCycle(readings=readings, is_new=True)
         memory = ParkingMemory(perception=Perception(cycle=cycle, local_map=local_map))
         for repeated in range(PARAMS.mapping.contradictions):
-            assert known_obstacles(memory) == 1, f"after {repeated} readings"
+            assert obstacle_count(memory) == 1, f"after {repeated} readings"
             memory = forget_what_left(memory, ParkingSystemInput(), PARAMS)
-        assert known_obstacles(memory) == left
+        assert obstacle_count(memory) == left

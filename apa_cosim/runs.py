@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -83,7 +83,7 @@ class Run:
     def plot(self) -> "Figure":
         """Return the picture of the run: top view, speed, position and heading over time, states."""
         from orchestrator.presentation.drawing.figure import overview
-        from orchestrator.presentation.drawing.seen import overview_of
+        from orchestrator.presentation.drawing.picture_data import overview_of
 
         return overview(overview_of(self.recording, self.summary, self.scenario))
 
@@ -92,7 +92,7 @@ class Run:
 
         Raises ``BadInput`` if the folder has the log of another run: a folder is one run's.
         """
-        from orchestrator.inputs.text.owned import lock_folder
+        from orchestrator.inputs.text.locked_folder import lock_folder
         from orchestrator.presentation.report.replay import write_replay
         from orchestrator.presentation.report.results import LOG, PAGE, write_picture, write_summary
 

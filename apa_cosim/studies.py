@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from apa_cosim.runs import Run, run
 from orchestrator.commands.sweep import select_study
 from orchestrator.inputs.text.errors import RunError, suggestion
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.studies.sweep.repeat import write_scenario
 from orchestrator.studies.sweep.sweep import Options
 from orchestrator.studies.sweep.sweep import sweep as run_study

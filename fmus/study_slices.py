@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fmus.cache_paths import CACHE_FOLDER
 from fmus.locks import cache_file
-from fmus.native.made_of import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
+from fmus.native.source_fingerprint import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
 from modelkit.connections import Wire, connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables

@@ -30,7 +30,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.compiled_batch",),
     ("fmus.compiled_episodes",),
     ("fmus.build",),
-    ("fmus.own_model", "fmus.policy_fmu", "fmus.sbom"),
+    ("fmus.user_model", "fmus.policy_fmu", "fmus.sbom"),
     ("orchestrator.inputs.text",),
     ("orchestrator.inputs.scenario",),
     ("orchestrator.simulation.cosim",),

@@ -11,7 +11,7 @@ from fmus.compiler.slicing import Slice
 from fmus.locks import cache_file
 from fmus.native.compilers import FLAGS
 from fmus.native.library_cache import C_FILES
-from fmus.native.made_of import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
+from fmus.native.source_fingerprint import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
 from fmus.native.tables import longest_name, runs_file, variables_file
 from modelkit.model import Model
 

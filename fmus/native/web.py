@@ -14,8 +14,8 @@ from fmus.locks import cache_file
 from fmus.native.compilers import find_compiler
 from fmus.native.coverage_probes import DECLARED, instrument
 from fmus.native.library_cache import C_FILES, fingerprints, key_of, own_files
-from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.platforms import WEB, CompileTarget
+from fmus.native.source_fingerprint import ROOT, hash_of, words_of
 from modelkit.connections import connections, part_of
 from modelkit.model import Chart, Model
 

@@ -27,14 +27,14 @@ COMMANDS = {
 """Command -> what it does. Its module is imported when it is chosen, so that ``apa --help`` imports none."""
 STUDIES = {
     "apa-grid": "orchestrator.studies.parking.study",
-    "apa-out": "orchestrator.studies.parking.out_study",
+    "apa-out": "orchestrator.studies.parking.pull_out_study",
     "apa-world": "orchestrator.studies.parking.world.study",
     "parking-world": "orchestrator.studies.parking.parking_world.study",
     "bakeoff": "orchestrator.studies.bakeoff.study",
     "guo2015-claim": "orchestrator.studies.bakeoff.claim",
     "search-kpis": "orchestrator.studies.parking.search_kpis",
     "valet-rows": "orchestrator.studies.parking.slot_rows",
-    "valet-slots": "orchestrator.studies.parking.found_study",
+    "valet-slots": "orchestrator.studies.parking.detected_slot_study",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which
 says what the study makes of its table and returns an exit code."""

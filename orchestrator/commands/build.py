@@ -87,7 +87,7 @@ def _systems(arguments: argparse.Namespace, kinds: list[str]) -> list["Built"]:
 
 def _own_model(arguments: argparse.Namespace) -> list["Built"]:
     from fmus.build import kinds_here
-    from fmus.own_model import BadModel, build_own, own_model
+    from fmus.user_model import BadModel, build_own, own_model
 
     if arguments.out is None:
         raise BadInput("a model of your own needs a place: give --out", key="--model")

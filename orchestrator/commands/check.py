@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from orchestrator.evaluation.verdict.judge import judge
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.numbers import facts_of
 from orchestrator.inputs.scenario.files import find_file
 from orchestrator.inputs.scenario.requirements import read_requirements

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fmus.files import write_whole
 from orchestrator.inputs.text.console import console, result_table, say, working
 from orchestrator.inputs.text.errors import NOT_PARKED, PARKED, BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.inputs.text.quantities import number
 
 if TYPE_CHECKING:

@@ -117,7 +117,7 @@ def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
 
 
 def _runs(folder: str | None) -> tuple[dict[str, str], Rows]:
-    from orchestrator.presentation.report.found_runs import find_runs
+    from orchestrator.presentation.report.run_index import find_runs
 
     heads = {"time": "time", "scenario": "scenario", "overrides": "overrides", "outcome": "outcome", "path": "path"}
     return heads, find_runs(Path(folder or RUNS))

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from orchestrator.inputs.text.console import say
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.presentation.log.recover import recover
 
 EXAMPLES = """examples:

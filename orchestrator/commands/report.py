@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.text.console import say, working
 from orchestrator.inputs.text.errors import PARKED, BadInput
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.presentation.log.messages import read_messages
 from orchestrator.presentation.log.read_log import log_file, log_name, read_log
 from orchestrator.presentation.report.replay import write_replay
@@ -94,7 +94,7 @@ def _write_figure(arguments: argparse.Namespace) -> int:
 
 
 def _write_video(arguments: argparse.Namespace) -> int:
-    from orchestrator.presentation.drawing.seen import overview_of
+    from orchestrator.presentation.drawing.picture_data import overview_of
     from orchestrator.presentation.drawing.video import VideoOptions, check_video, write_video
 
     width = arguments.width or "1280"

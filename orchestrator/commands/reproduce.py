@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fmus.files import write_whole
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 from orchestrator.studies.papers.papers import paper, papers

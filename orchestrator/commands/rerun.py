@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from orchestrator.commands.run.once import execute
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.summary import FmuUsed
 from orchestrator.inputs.text.console import console, say
 from orchestrator.inputs.text.errors import BAD_INPUT, BadInput

@@ -12,7 +12,7 @@ from orchestrator.commands import STUDIES
 from orchestrator.inputs.text.console import console
 from orchestrator.inputs.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
 from orchestrator.inputs.text.failures import verdict_stands
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.presentation.drawing.save import check_picture
 from orchestrator.simulation.cosim.kinds import KINDS
 

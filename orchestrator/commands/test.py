@@ -16,7 +16,7 @@ from orchestrator.inputs.scenario.requirements import read_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import Meter, Warnings, console, say
 from orchestrator.inputs.text.errors import INTERRUPTED, BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.inputs.text.readable import shortly
 from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments

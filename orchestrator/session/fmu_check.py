@@ -22,7 +22,7 @@ from orchestrator.simulation.cosim.model_instance import ModelInstance
 from orchestrator.simulation.imported.archive import binary, check_archive, pack
 from orchestrator.simulation.imported.limits import FmuLimits
 from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.simulation.system.remarks import (
+from orchestrator.simulation.system.diagnostics import (
     NEEDED_INPUTS,
     loops,
     missing_for_the_verdict,

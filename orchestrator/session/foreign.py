@@ -105,7 +105,7 @@ def fmu_of(text: str) -> Path:
 
     Raises ``BadInput`` if there is no such file, or for what is wrong with the model.
     """
-    from orchestrator.session.own import is_model, own_fmu
+    from orchestrator.session.user_model_instance import is_model, own_fmu
 
     if is_model(text):
         return own_fmu(text)

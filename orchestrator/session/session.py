@@ -25,7 +25,7 @@ from orchestrator.simulation.cosim.recording import Recorder, Recording
 from orchestrator.simulation.cosim.signal_blocks import Times
 from orchestrator.simulation.cosim.stop_conditions import standstill
 from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.simulation.system.remarks import remarks
+from orchestrator.simulation.system.diagnostics import remarks
 
 if TYPE_CHECKING:
     from orchestrator.presentation.log.mcap_log import McapLog

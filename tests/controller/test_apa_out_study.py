@@ -6,9 +6,9 @@ from shapely.geometry import box
 from controller_fmu.apa.slot import Kind
 from modelkit.vocabulary import Pose
 from orchestrator.studies.parking.cases import KINDS
-from orchestrator.studies.parking.out_cases import cases, start_of, things_of
-from orchestrator.studies.parking.out_known import free_ahead, moves_out, shape_known
-from orchestrator.studies.parking.out_study import study
+from orchestrator.studies.parking.pull_out_cases import cases, start_of, things_of
+from orchestrator.studies.parking.pull_out_feasibility import free_ahead, moves_out, shape_known
+from orchestrator.studies.parking.pull_out_study import study
 from tests.controller.test_apa_pull_out import outline
 
 

@@ -18,8 +18,8 @@ from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.native import fmu as native_fmu
 from fmus.native import sources, tables
 from fmus.native.compilers import FLAGS, find_compiler
-from fmus.native.made_of import CACHED_TRANSLATIONS
 from fmus.native.platforms import PLATFORMS, host
+from fmus.native.source_fingerprint import CACHED_TRANSLATIONS
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.variables import variables, with_values
 from orchestrator.inputs.scenario.load_scenario import load_scenario

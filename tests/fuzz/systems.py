@@ -18,7 +18,7 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.foreign import load_bound_scenario
 from orchestrator.session.session import NOBODY, Messages, make_instances
 from orchestrator.simulation.system.assemble import elaborate
-from orchestrator.simulation.system.remarks import remarks
+from orchestrator.simulation.system.diagnostics import remarks
 
 DEGREE = math.pi / 180.0
 ANGLES = {"rad": 1.0, "deg": DEGREE, "gon": math.pi / 200.0, "mrad": 0.001}

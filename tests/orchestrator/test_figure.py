@@ -14,10 +14,10 @@ from orchestrator.evaluation.verdict.frame import in_frame
 from orchestrator.evaluation.verdict.geometry import CarOutline, place, sample_path
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.presentation.drawing.beside import PictureBeside
 from orchestrator.presentation.drawing.figure import overview, picture
 from orchestrator.presentation.drawing.panels import PANELS, Panel, PanelCurve
-from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.drawing.picture_data import overview_of
+from orchestrator.presentation.drawing.picture_process import PictureBeside
 from orchestrator.session.session import run_scenario
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))

@@ -12,7 +12,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["guo2015-case4", "--set", "stop_time=0.3", "--fmus", "none"]
@@ -33,7 +33,7 @@ def test_a_folder_in_use_is_refused(words: Any, tmp_path: Path, capsys: pytest.C
 
 @posix
 def test_the_lock_dies_with_its_process(tmp_path: Path) -> None:
-    code = "import sys, os; from pathlib import Path; from orchestrator.inputs.text.owned import lock_folder\n"
+    code = "import sys, os; from pathlib import Path; from orchestrator.inputs.text.locked_folder import lock_folder\n"
     code += "with lock_folder(Path(sys.argv[1])):\n print('has it', flush=True)\n os.kill(os.getpid(), 9)"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, env=environment)

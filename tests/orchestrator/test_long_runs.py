@@ -15,7 +15,7 @@ from orchestrator.cli import main
 from orchestrator.evaluation.comparison import traces
 from orchestrator.evaluation.comparison.compare import compare
 from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.drawing.decimation import decimate, deviation

@@ -16,7 +16,7 @@ from controller_fmu.registry import ControllerOutput
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.evaluation.verdict.geometry import CarOutline, place, slot_box
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.numbers import NUMBERS
 from orchestrator.evaluation.verdict.outcome import state_name
 from orchestrator.evaluation.verdict.standing import outline_margin

@@ -9,7 +9,7 @@ from controller_fmu.registry import MODEL
 from modelkit.signal import Role
 from modelkit.variables import variables
 from orchestrator.evaluation.verdict.geometry import find_changes, key_points, sample_path
-from orchestrator.presentation.drawing.seen import path_plans, path_points
+from orchestrator.presentation.drawing.picture_data import path_plans, path_points
 from orchestrator.simulation.cosim.recording import Recording
 from tests.native_runs import native_recording
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.presentation.log.read_log import read_log
-from orchestrator.presentation.report.found_runs import find_runs
+from orchestrator.presentation.report.run_index import find_runs
 from orchestrator.session.provenance import git_commit
 from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.live.layout import layout_data

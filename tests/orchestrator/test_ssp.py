@@ -14,7 +14,7 @@ from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.foreign import load_bound_scenario
 from orchestrator.session.session import NOBODY, Messages, make_instances
 from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
-from orchestrator.simulation.system.remarks import remarks
+from orchestrator.simulation.system.diagnostics import remarks
 from tests.orchestrator import c_fmus
 from tests.orchestrator.foreign_fmus import changed
 

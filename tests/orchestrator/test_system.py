@@ -24,7 +24,7 @@ from orchestrator.simulation.cosim.fmu_instance import FmuInstance, Scale
 from orchestrator.simulation.cosim.model_instance import ModelInstance
 from orchestrator.simulation.system.assemble import ElaboratedSystem, elaborate
 from orchestrator.simulation.system.conversions import into, out_of
-from orchestrator.simulation.system.remarks import loops, remarks
+from orchestrator.simulation.system.diagnostics import loops, remarks
 from orchestrator.simulation.system.units import UnfitUnitsError, conversion
 from tests.orchestrator import bad_fmus, c_fmus
 from tests.orchestrator.toy_models import BRAIN, PLANT

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Target
 from orchestrator.presentation.drawing.figure import _plan
-from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.drawing.picture_data import overview_of
 from orchestrator.presentation.log.read_log import read_log
 from orchestrator.presentation.report.still import still_of
 from orchestrator.session.foreign import bind_parameters

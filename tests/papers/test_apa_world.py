@@ -11,8 +11,8 @@ from modelkit.geometry import Box, boxes_gap, corners
 from orchestrator.commands.sweep import select_study
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.world import ends
-from orchestrator.studies.parking.world.asked import HEARD, feasibility_columns
 from orchestrator.studies.parking.world.factors import FACTORS
+from orchestrator.studies.parking.world.feasibility import HEARD, feasibility_columns
 from orchestrator.studies.parking.world.study import fields, space, study
 from orchestrator.studies.sweep.repeat import repeat_row
 from orchestrator.studies.sweep.study.study import Study

@@ -13,7 +13,7 @@ from PIL.GifImagePlugin import GifImageFile
 from orchestrator.cli import main
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.drawing.picture_data import overview_of
 from orchestrator.presentation.drawing.video import VideoOptions, write_video
 
 WIDTH = 320

@@ -13,8 +13,8 @@ from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.obstacle_map import box_corners, map_of
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.studies.parking.found_scenarios import out_of
-from orchestrator.studies.parking.found_slots import cases as slots
+from orchestrator.studies.parking.detected_slot_cases import cases as slots
+from orchestrator.studies.parking.detected_slot_scenarios import out_of
 from orchestrator.studies.parking.slot_rows import cases, scenario_of, study
 from orchestrator.studies.sweep.in_memory import columns_in_memory
 

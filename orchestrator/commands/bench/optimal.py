@@ -8,7 +8,7 @@ from typing import Any
 from fmus.files import write_whole
 from orchestrator.inputs.text.console import console, say, working
 from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.presentation.report.replay import write_replay
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.benchmark.driving import KINEMATIC, drive_scene

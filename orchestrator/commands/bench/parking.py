@@ -8,7 +8,7 @@ from pathlib import Path
 from fmus.files import write_whole
 from orchestrator.inputs.text.console import Meter, console, say
 from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.interrupts import on_interrupt

@@ -9,7 +9,7 @@ from fmus.installation import missing_package
 from orchestrator.commands.sweep import select_study
 from orchestrator.inputs.text.console import console
 from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.simulation.cosim.kinds import KINDS
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from orchestrator.session.foreign import fmu_of
 from orchestrator.simulation.cosim.fmu_instance import Ports
 from orchestrator.simulation.cosim.model_description import ports_of, read_description
 from orchestrator.simulation.imported.archive import check_archive
-from orchestrator.simulation.system.remarks import SPARE
+from orchestrator.simulation.system.diagnostics import SPARE
 from orchestrator.simulation.system.signal_matching import Signals, Suggestion, match_signals, words
 
 PLAIN = re.compile(r"-?[A-Za-z_][\w.()/ \[\]-]*")

@@ -3,7 +3,7 @@
 import argparse
 from contextlib import nullcontext
 
-from orchestrator.presentation.drawing.beside import PictureBeside
+from orchestrator.presentation.drawing.picture_process import PictureBeside
 from orchestrator.session.options import add_foreign_arguments, add_output_arguments
 from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 

@@ -12,8 +12,8 @@ from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.inputs.text.failures import verdict_stands
 from orchestrator.inputs.text.readable import shortly
-from orchestrator.presentation.drawing.beside import PictureBeside
-from orchestrator.presentation.drawing.seen import overview_of
+from orchestrator.presentation.drawing.picture_data import overview_of
+from orchestrator.presentation.drawing.picture_process import PictureBeside
 from orchestrator.presentation.report.results import (
     LIVE,
     LOG,

@@ -6,7 +6,7 @@ from itertools import count
 from pathlib import Path
 
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.presentation.report.results import LOG, SUMMARY
 
 RUNS = Path("runs")

@@ -207,7 +207,7 @@ def summarize(
 ) -> Summary:
     """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist.
 
-    ``note``: what its log does not tell, see :func:`orchestrator.evaluation.verdict.logged.read_logged_run`.
+    ``note``: what its log does not tell, see :func:`orchestrator.evaluation.verdict.logged_scenario.read_logged_run`.
     ``facts``: those of :func:`orchestrator.evaluation.verdict.numbers.facts_of`, if they are known already.
     """
     facts = facts_of(recording, scenario) if facts is None else facts

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from orchestrator.inputs.text.errors import BadInput, suggestion
 from orchestrator.presentation.drawing.panels import DEGREE, PANELS, Panel, PanelCurve
+from orchestrator.presentation.drawing.picture_data import path_plans, path_points
 from orchestrator.presentation.drawing.save import check_picture, save
-from orchestrator.presentation.drawing.seen import path_plans, path_points
 from orchestrator.simulation.cosim.recording import Recording
 
 STYLES = ("screen", "paper")

@@ -5,7 +5,7 @@ import csv
 from pathlib import Path
 
 from fmus.files import whole
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.inputs.text.patterns import matching
 from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.simulation.cosim.recording import Recording

@@ -10,7 +10,7 @@ import numpy as np
 from fmus.files import whole
 from fmus.installation import missing_package
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.inputs.text.patterns import matching
 from orchestrator.presentation.export.csv import add_run_arguments
 from orchestrator.presentation.log.read_log import read_log

@@ -13,10 +13,10 @@ from fmus.files import whole
 from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.geometry import CarOutline, boxes, place, sample_path, slot_box, vehicle_parameters
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.inputs.text.patterns import matching
 from orchestrator.presentation.drawing.decimation import decimate
 from orchestrator.presentation.drawing.panels import PANELS

@@ -8,7 +8,7 @@ from typing import Final
 from fmus.files import whole_folder
 from fmus.installation import missing_package
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_with
+from orchestrator.inputs.text.locked_folder import lock_with
 from orchestrator.inputs.text.patterns import matching
 from orchestrator.presentation.log.line import Line
 from orchestrator.presentation.log.messages import read_messages

@@ -13,7 +13,7 @@ from orchestrator.evaluation.verdict.geometry import (
     sample_path,
     vehicle_parameters,
 )
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.presentation.drawing.scene import CAR as CAR_FRAME
 from orchestrator.presentation.drawing.scene import FRONT_WHEELS, WORLD, Surroundings, still_life
 from orchestrator.presentation.drawing.scene import ODOMETRY as ODOMETRY_FRAME

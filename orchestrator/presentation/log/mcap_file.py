@@ -30,7 +30,7 @@ from mcap.writer import MCAP0_MAGIC
 from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
-from orchestrator.presentation.log.made_of import clear
+from orchestrator.presentation.log.derived_files import clear
 
 CHUNK_SIZE = 1024 * 1024
 LIBRARY = "apa-cosim"

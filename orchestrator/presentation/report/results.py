@@ -24,7 +24,7 @@ def write_summary(folder: Path, summary: Summary) -> str:
 def write_picture(folder: Path, recording: Recording, summary: Summary, scenario: Scenario) -> None:
     """Write overview.png."""
     from orchestrator.presentation.drawing.figure import picture
-    from orchestrator.presentation.drawing.seen import overview_of
+    from orchestrator.presentation.drawing.picture_data import overview_of
 
     with verdict_stands(str(folder / PICTURE)):
         write_whole(folder / PICTURE, picture(overview_of(recording, summary, scenario)))

@@ -13,7 +13,7 @@ PAGE_TEMPLATE = Path(__file__).parent / "template" / "runs.html"
 
 
 def write_runs_page(folder: Path, rows: list[dict[str, Any]]) -> Path:
-    """Write ``folder/index.html`` over ``rows`` of :func:`found_runs.find_runs`; return its path."""
+    """Write ``folder/index.html`` over ``rows`` of :func:`run_index.find_runs`; return its path."""
     page = folder / "index.html"
     outcomes = sorted({row["outcome"] for row in rows})
     text = Template(PAGE_TEMPLATE.read_text(encoding="utf-8")).substitute(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orchestrator.evaluation.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box, vehicle_parameters
-from orchestrator.evaluation.verdict.logged import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.recording import Recording
 

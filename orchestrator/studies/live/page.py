@@ -20,7 +20,7 @@ from orchestrator.presentation.drawing import palette
 from orchestrator.presentation.report import page as report
 from orchestrator.presentation.report.charts import charts_of_models
 from orchestrator.presentation.report.payload import Arrays
-from orchestrator.studies.live.described import models_data
+from orchestrator.studies.live.model_description import models_data
 from orchestrator.studies.live.situation import numbers_data, situation
 
 ROOM = Path(__file__).parent

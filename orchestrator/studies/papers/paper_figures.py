@@ -22,8 +22,8 @@ from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.road import road_at, road_length
 from modelkit.vocabulary import Pose
+from orchestrator.presentation.drawing.picture_data import path_plans
 from orchestrator.presentation.drawing.run_figure import LINES, PATH, run_figure, style_context
-from orchestrator.presentation.drawing.seen import path_plans
 from orchestrator.studies.papers.result import Driven
 
 Draw = Callable[[list[Driven]], Figure]

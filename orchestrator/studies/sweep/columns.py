@@ -16,8 +16,8 @@ from orchestrator.inputs.scenario.scenario import PENETRATION
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Chunk, Job, truths
 from orchestrator.studies.sweep.rows import FIRST_MEASURE
+from orchestrator.studies.sweep.study.imported_fmu import signals_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.studies.sweep.study.theirs import signals_of
 from orchestrator.studies.sweep.verdict import RESULTS, judge, limit_value, things, values_in
 
 WITHIN = "within {}"

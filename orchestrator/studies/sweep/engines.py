@@ -44,7 +44,7 @@ from orchestrator.studies.sweep.engine import (
 )
 from orchestrator.studies.sweep.job import Chunk, Job
 from orchestrator.studies.sweep.rows import why_not_compiled
-from orchestrator.studies.sweep.study.theirs import files_of
+from orchestrator.studies.sweep.study.imported_fmu import files_of
 
 BATCH_CHUNK = 500
 """Runs per chunk of the compiled batch: about half a second."""

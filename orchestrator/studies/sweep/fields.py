@@ -9,7 +9,7 @@ from modelkit.variables import Variable, variables
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.scenario.scenario import LONGEST_STEP, Scenario
 from orchestrator.inputs.text.errors import BadInput, suggestion
-from orchestrator.studies.sweep.study.theirs import parameters_known
+from orchestrator.studies.sweep.study.imported_fmu import parameters_known
 
 TIME = Signal("s", "", 0.0, 1e6)
 SCENARIO_FIELDS: dict[str, Variable] = {

@@ -9,7 +9,7 @@ from fmus.files import write_whole
 from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.presentation.report.results import LOG, is_shown, write_page, write_picture, write_summary
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import ImportedFmus, load_bound_scenario

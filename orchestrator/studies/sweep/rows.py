@@ -19,7 +19,7 @@ from orchestrator.inputs.scenario.scenario import PENETRATION, Scenario
 from orchestrator.inputs.text.errors import BadInput, suggestion
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.recording import Recording
-from orchestrator.studies.sweep.study.theirs import files_of, signals_of
+from orchestrator.studies.sweep.study.imported_fmu import files_of, signals_of
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""

@@ -21,8 +21,8 @@ from orchestrator.studies.sweep.engine import Engine
 from orchestrator.studies.sweep.engines import choose_task, make_engine
 from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunks, job_to, make_job
 from orchestrator.studies.sweep.store import Store
+from orchestrator.studies.sweep.study.imported_fmu import hashes_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.studies.sweep.study.theirs import hashes_of
 
 
 @dataclass

@@ -24,7 +24,7 @@ from orchestrator.studies.sweep.rows import (
     limits_of_whole_runs,
     values_of,
 )
-from orchestrator.studies.sweep.study.theirs import declare_signals
+from orchestrator.studies.sweep.study.imported_fmu import declare_signals
 
 OUTCOMES: tuple[Outcome, ...] = ("parked", "not_parked", "failed", "aborted", "finished", "not_finished")
 

@@ -14,9 +14,9 @@ from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
 from orchestrator.inputs.text.quantities import text_or_scalar
 from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.foreign import FOREIGN, ImportedFmus, fmu_of, parameters_of
-from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.session.trust import require_trust
+from orchestrator.session.user_model_instance import is_model
 from orchestrator.simulation.cosim.algorithm import CoSimulation, last_exchange
 from orchestrator.simulation.cosim.fmu_files import fmu_beside, fmu_files
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance
@@ -170,7 +170,7 @@ def _instance(test: StepTest, model: str, kind: str, foreign: ImportedFmus) -> F
 
 
 def _own(text: str) -> Model:
-    from fmus.own_model import BadModel, own_model
+    from fmus.user_model import BadModel, own_model
 
     try:
         return own_model(text)

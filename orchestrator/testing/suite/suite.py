@@ -19,7 +19,7 @@ from orchestrator.inputs.scenario.requirements import Requirement
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import PARKED, RESOURCES, BadInput, NotRunError
 from orchestrator.inputs.text.failures import exit_code_and_message
-from orchestrator.inputs.text.owned import lock_folder
+from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.inputs.text.readable import changes_text
 from orchestrator.presentation.report.results import LOG, PAGE, is_shown, write_page, write_summary
 from orchestrator.session.foreign import Files, ImportedFmus, load_bound_scenario

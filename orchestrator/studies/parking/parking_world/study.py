@@ -29,8 +29,8 @@ from orchestrator.studies.parking.parking_world.scene import parameters
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
-from orchestrator.studies.parking.world.asked import HEARD
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
+from orchestrator.studies.parking.world.feasibility import HEARD
 from orchestrator.studies.parking.world.scene import WITH_KERB
 from orchestrator.studies.sweep.fields import Field, find_field
 from orchestrator.studies.sweep.study.design import Design

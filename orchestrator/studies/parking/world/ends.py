@@ -18,8 +18,8 @@ from orchestrator.inputs.scenario.requirements import Requirement, library_requi
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
-from orchestrator.studies.parking.world.asked import COLUMNS, HEARD, feasibility_columns
 from orchestrator.studies.parking.world.factors import NOBODY
+from orchestrator.studies.parking.world.feasibility import COLUMNS, HEARD, feasibility_columns
 from orchestrator.studies.parking.world.scene import THINGS, WHEEL
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Objective

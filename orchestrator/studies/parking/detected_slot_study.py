@@ -10,8 +10,8 @@ from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.inputs.scenario.obstacle_map import map_of
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
-from orchestrator.studies.parking.found_scenarios import out_of, scenario_of
-from orchestrator.studies.parking.found_slots import DetectedSlotCase, cases
+from orchestrator.studies.parking.detected_slot_cases import DetectedSlotCase, cases
+from orchestrator.studies.parking.detected_slot_scenarios import out_of, scenario_of
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table

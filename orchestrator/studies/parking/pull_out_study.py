@@ -15,8 +15,16 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import CARS, KINDS
-from orchestrator.studies.parking.out_cases import PASSES, PullOutCase, case_labels, case_of, cases, side_of, vehicle_of
-from orchestrator.studies.parking.out_known import free_ahead, moves_out
+from orchestrator.studies.parking.pull_out_cases import (
+    PASSES,
+    PullOutCase,
+    case_labels,
+    case_of,
+    cases,
+    side_of,
+    vehicle_of,
+)
+from orchestrator.studies.parking.pull_out_feasibility import free_ahead, moves_out
 from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study

@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 from threading import Lock
 
-from fmus.own_model import BadModel, build_own, own_model
+from fmus.user_model import BadModel, build_own, own_model
 from orchestrator.inputs.text.console import working
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_files import sources_hash

@@ -10,7 +10,7 @@ from orchestrator.inputs.scenario.obstacle_map import box_corners
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Target
 from orchestrator.studies.parking.cases import CARS
-from orchestrator.studies.parking.found_slots import (
+from orchestrator.studies.parking.detected_slot_cases import (
     SEED_STRIDE,
     DetectedSlotCase,
     SlotPlace,

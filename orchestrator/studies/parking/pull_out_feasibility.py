@@ -11,7 +11,7 @@ from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from modelkit.car import largest_curvature
 from modelkit.vocabulary import Pose
 from orchestrator.studies.parking.cases import CARS
-from orchestrator.studies.parking.out_cases import PullOutCase, start_of, things_of
+from orchestrator.studies.parking.pull_out_cases import PullOutCase, start_of, things_of
 
 MIN_CLEARANCE = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""

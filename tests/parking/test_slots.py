@@ -10,7 +10,14 @@ from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import without_inside
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, log_likelihood_ratio
+from controller_fmu.parking.slots.candidate import (
+    DECIDED,
+    SlotCandidate,
+    SlotType,
+    bay_width,
+    find_slot,
+    log_likelihood_ratio,
+)
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row
@@ -82,6 +89,25 @@ def test_type_follows_from_what_was_seen_in_full() -> None:
     assert log_likelihood_ratio(row_of((1.5, 1.6), False)) == 0.0
     assert log_likelihood_ratio(row_of((3.9, 0.6), False)) > 2.3
     assert log_likelihood_ratio(row_of((20.0, 1.0), False)) == 0.0
+
+
+@pytest.mark.parametrize(("front", "is_decided"), [(1.4, True), (2.8, False)])
+def test_two_cars_seen_as_one_from_afar_leave_the_type_open(front: float, is_decided: bool) -> None:
+    """A side of 4.6 m is one car along the road, or, passed at 2 m, two cars across it whose gap was not resolved."""
+    seen = RowMember(-4.6, 0.0, front, True, True)
+    begun = RowMember(4.1, 5.0, front, True, False)
+    none = (RowMember(),) * 6
+    candidate = SlotCandidate(row=SlotRow(members=(begun, seen, *none), used=2), behind=seen, ahead=begun)
+    assert (log_likelihood_ratio(candidate) > DECIDED) == is_decided
+
+
+def test_a_car_that_is_still_being_passed_tells_no_width_of_bays() -> None:
+    begun = RowMember(6.8, 7.5, 1.5, True, False)
+    cars = tuple(RowMember(x, x + 1.8, 1.5, True, True) for x in (4.2, -1.8, -4.35))
+    row = SlotRow(members=(begun, *cars, *(RowMember(),) * 4), used=4)
+    assert bay_width(row) == pytest.approx(2.55)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=cars[1], ahead=cars[0], front=1.5, bay=bay_width(row))
+    assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(2.1, abs=0.05), "one bay, wider than its row's"
 
 
 def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:

@@ -9,6 +9,8 @@ from controller_fmu.parking.slots.params import SlotParams
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
+OFF_CENTRE = 0.3
+"""A gap may be narrower than its empty bays by this [m]: cars stand up to 0.15 m beside the middle of theirs."""
 MAX_KERB_SHIFT = 0.05
 """Towards a kerb the vehicle leaves its neighbours' line by this [m] at most, if that is enough."""
 
@@ -56,9 +58,9 @@ def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -
 def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
-    A gap of n bays is n times the width of a bay, and once more the spare width beside a car in its bay.
+    A gap of n bays is at least n times the width of a bay, and once more the spare width beside a car in its bay.
     """
     width = candidate.ahead.start - candidate.behind.end
     spare = max(candidate.bay - CAR_WIDTH, 0.0)
-    bays = max(1.0, float(math.floor((width - spare) / candidate.bay + 0.5))) if candidate.bay > 0.0 else 1.0
+    bays = max(1.0, float(math.floor((width - spare + OFF_CENTRE) / candidate.bay))) if candidate.bay > 0.0 else 1.0
     return candidate.ahead.start - 0.5 * spare - 0.5 * (width - spare) / bays

@@ -39,7 +39,7 @@ class Arrays:
         content = json.dumps({**_plain(header), "lengths": self.lengths}, allow_nan=False, separators=(",", ":"))
         data = content.encode()
         raw = len(data).to_bytes(4, "little") + data + b"".join(self._blocks)
-        return base64.b64encode(zlib.compress(raw, 9)).decode()
+        return base64.b64encode(zlib.compress(raw)).decode()
 
 
 def _plain(value: Any) -> Any:

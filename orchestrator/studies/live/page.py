@@ -73,7 +73,7 @@ def _models(models: tuple[tuple[str, Model], ...]) -> dict[str, Any]:
 
 
 def _module(models: Mapping[str, Model]) -> str:
-    return base64.b64encode(zlib.compress(web_module(models).read_bytes(), 9)).decode()
+    return base64.b64encode(zlib.compress(web_module(models).read_bytes())).decode()
 
 
 def scripts() -> tuple[str, str]:

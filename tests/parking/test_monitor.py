@@ -1,5 +1,6 @@
 """The collision monitor: the braking invariant by interval splitting, and what it must and must not stop for."""
 
+import itertools
 import math
 
 import pytest
@@ -69,6 +70,23 @@ def test_stopping_distance_never_exceeds_the_free_distance() -> None:
                         speed = speed_for_distance(low, delay, brake)
                         assert stopping_distance(speed, delay, brake) <= low + 1e-9
                         assert speed <= speed_for_distance(high, delay, brake) + 1e-12
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("delay", [0.0, 0.15, 0.3])
+def test_the_vehicle_stops_before_a_wall_from_any_speed_gap_and_delay(direction: float, delay: float) -> None:
+    """Boxes of gaps 4 cm wide. A farther wall never makes the allowed speed smaller, so the far end of a box, judged by
+    the gap of its near end, bounds all of it.
+    """
+    params, mapping = MonitorParams(), MappingParams()
+    edge = FRONT if direction > 0.0 else OUTLINE.half_length - OUTLINE.centre_ahead
+    brake = params.brake_deceleration
+    for box, step in itertools.product(range(40), range(13)):
+        near, speed = 0.04 * box, 0.1 * step
+        wall = wall_at(direction * (edge + near + 0.04))
+        motion = VehicleMotion(Pose(), direction, speed, 0.0, 10.0, delay, brake)
+        allowed = min(monitor_collision(motion, OUTLINE, wall, NOTHING, params, mapping).speed_limit, speed)
+        assert stopping_distance(allowed, delay, brake) <= near + 1e-9, (near, speed)
 
 
 @given(st.floats(0.0, 3.0), st.floats(0.0, 1.0), st.floats(0.1, 10.0))

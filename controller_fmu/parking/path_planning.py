@@ -42,7 +42,7 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, least_depth, overhang_of
-from controller_fmu.parking.slots.slot_filter import filtered_slot
+from controller_fmu.parking.slots.slot_filter import slot_of_filter
 from controller_fmu.parking.state import ParkingMemory, SearchProgress
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -191,7 +191,7 @@ def corrected_slot(
     search: SearchProgress, landmarks: tuple[Landmark, ...], outline: VehicleOutline, mapping: MappingParams
 ) -> SlotCandidate:
     """Return the slot as it is known now: by all echoes of it, and by what else has been mapped in it."""
-    slot = filtered_slot(search.slot, search.slot_filter, outline)
+    slot = slot_of_filter(search.slot, search.slot_filter, outline)
     return correct_slot(slot, landmarks, outline, mapping)
 
 

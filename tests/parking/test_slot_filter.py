@@ -14,12 +14,12 @@ from controller_fmu.parking.slots.row import RowMember, SlotRow
 from controller_fmu.parking.slots.slot_filter import (
     CORRELATED_ECHOES,
     FRONT_SIGMA,
-    STATES,
+    STATE_COUNT,
     SlotFilter,
     begin_slot_filter,
-    expected_echo,
-    filtered_slot,
+    predict_echo,
     predict_slot,
+    slot_of_filter,
     update_slot,
 )
 from modelkit.geometry import Box
@@ -41,7 +41,7 @@ def slot_at(dx: float = 0.0, dy: float = 0.0, turn: float = 0.0) -> SlotCandidat
 
 
 def matrix(slot_filter: SlotFilter) -> Any:
-    return np.array(slot_filter.covariance).reshape(STATES, STATES)
+    return np.array(slot_filter.covariance).reshape(STATE_COUNT, STATE_COUNT)
 
 
 VIEWS = [(Pose(1.5, 1.2, 1.2), 11), (Pose(1.4, -1.5, 1.5), 9), (Pose(1.6, -2.5, 1.6), 11), (Pose(1.5, -3.2, 1.57), 5)]
@@ -52,14 +52,14 @@ def test_gradient_is_the_derivative_of_the_range(vehicle: Pose, number: int) -> 
     slot = slot_at(0.1, -0.05, 0.02)
     begun = begin_slot_filter(slot)
     sensor = sensor_pose(CAR.ultrasonic.mounts[number], CAR.ultrasonic.half_angle, vehicle)
-    echo = expected_echo(begun, slot, sensor)
+    echo = predict_echo(begun, slot, sensor)
     assert echo.is_known
-    for state in range(STATES):
+    for state in range(STATE_COUNT):
         moved = [
             begun._replace(state=tuple(x + (d if n == state else 0.0) for n, x in enumerate(begun.state)))
             for d in (-1e-5, 1e-5)
         ]
-        low, high = (expected_echo(item, slot, sensor).predicted.distance for item in moved)
+        low, high = (predict_echo(item, slot, sensor).predicted.distance for item in moved)
         assert echo.gradient[state] == pytest.approx((high - low) / 2e-5, abs=1e-3)
 
 
@@ -67,7 +67,7 @@ def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     slot = slot_at(0.1, -0.05, 0.02)
     before = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)
     sensor = sensor_pose(CAR.ultrasonic.mounts[9], CAR.ultrasonic.half_angle, Pose(1.4, -1.5, 1.5))
-    echo = expected_echo(before, slot, sensor)
+    echo = predict_echo(before, slot, sensor)
     h, p = np.array(echo.gradient), matrix(before)
     s = h @ p @ h + CORRELATED_ECHOES * (1e-4 + FRONT_SIGMA**2)
     after = update_slot(before, slot, sensor, echo.predicted.distance + 0.05, 1e-4, 9.0)
@@ -96,7 +96,7 @@ def errors_after_drive(seed: int) -> tuple[float, float, float]:
             if reading_status(measured, sensors) == ReadingStatus.ECHO:
                 sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, believed)
                 slot_filter = update_slot(slot_filter, slot, sensor, measured, 1e-4, PARAMS.gate)
-    found = filtered_slot(slot, slot_filter, OUTLINE)
+    found = slot_of_filter(slot, slot_filter, OUTLINE)
     turned = believed.heading - true.heading
     c, s = math.cos(turned), math.sin(turned)
     middle_x, middle_y = 0.5 * WIDTH - true.x, -true.y

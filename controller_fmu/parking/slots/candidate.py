@@ -33,7 +33,7 @@ PAIR_LENGTH = 4.4
 PAIR_SIGMA = 0.36
 """Two cars side by side, 0.4 to 1.2 m apart: length [m] over both, standard deviation."""
 RESOLVED_FRONT = 2.0
-UNRESOLVED = 0.7
+MERGING_PENALTY = 0.7
 """Beyond this distance [m] of a front from the vehicle's middle, 1.2 m from its flank, the echoes of such a pair tell
 the cars apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two."""
 MERGED_LENGTH = 1.0
@@ -170,16 +170,16 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
             if length < MAX_CAR:
                 ratio += _log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
                 one = _log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
-                two = _log_likelihood(length, True, PAIR_LENGTH, PAIR_SIGMA) - unresolved_penalty(member)
+                two = _log_likelihood(length, True, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
                 ratio -= max(one, two)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * DECIDED
     return ratio
 
 
-def unresolved_penalty(member: RowMember) -> float:
+def merging_penalty(member: RowMember) -> float:
     """Return minus the log of the probability that two cars side by side are measured as one, as far off as a side."""
-    return UNRESOLVED if member.front > RESOLVED_FRONT else 2.0 * DECIDED
+    return MERGING_PENALTY if member.front > RESOLVED_FRONT else 2.0 * DECIDED
 
 
 def _log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:

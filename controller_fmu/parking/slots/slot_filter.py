@@ -35,15 +35,15 @@ from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
-STATES = 7
+STATE_COUNT = 7
 """Corner x, y and heading of the neighbour behind, then of the one ahead, then the end."""
-AHEAD = 3
-END = 6
+AHEAD_OFFSET = 3
+END_INDEX = 6
 FRONT_SIGMA = 0.03
 """Standard deviation [m] of a front where a side ends, and of a body's surface from a straight line."""
 END_SIGMA = 0.05
-"""And of what a slot ends at, measured from the road: askew by 1 deg over half a slot."""
-WIDEST = 1.15
+"""And of what a slot ends at, measured from the road: turned by 1 deg over half a slot."""
+CONE_SPREAD = 1.15
 """Tangent of the widest half cone over the usual one (34 deg, 30 deg), and of the usual one over the narrowest."""
 CORRELATED_ECHOES = 9.0
 """So many echoes in a row share the error of the sensor's mounting and of the surface: each counts as a part of one."""
@@ -52,8 +52,8 @@ CORRELATED_ECHOES = 9.0
 class SlotFilter(NamedTuple):
     """State, its covariance by rows, and the direction into the slot; ``is_begun``: there is a slot."""
 
-    state: tuple[float, ...] = (0.0,) * STATES
-    covariance: tuple[float, ...] = (0.0,) * (STATES * STATES)
+    state: tuple[float, ...] = (0.0,) * STATE_COUNT
+    covariance: tuple[float, ...] = (0.0,) * (STATE_COUNT * STATE_COUNT)
     into_x: float = 0.0
     into_y: float = 1.0
     is_begun: bool = False
@@ -63,7 +63,7 @@ class SlotEcho(NamedTuple):
     """The predicted echo of a slot: its range, and its derivatives by the states; ``is_known``: it tells something."""
 
     predicted: PredictedRange = PredictedRange()
-    gradient: tuple[float, ...] = (0.0,) * STATES
+    gradient: tuple[float, ...] = (0.0,) * STATE_COUNT
     is_known: bool = False
 
 
@@ -102,7 +102,8 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
     )
     mixed = ((behind - front) * cos * sin, (ahead - front) * cos * sin)
     covariance = tuple(
-        _initial_covariance(number // STATES, number % STATES, variances, mixed) for number in range(STATES * STATES)
+        _initial_covariance(number // STATE_COUNT, number % STATE_COUNT, variances, mixed)
+        for number in range(STATE_COUNT * STATE_COUNT)
     )
     return SlotFilter(state, covariance, into_x, into_y, True)
 
@@ -122,7 +123,7 @@ def _initial_covariance(row: int, column: int, variances: tuple[float, ...], mix
         return variances[row]
     if min(row, column) == 0 and max(row, column) == 1:
         return mixed[0]
-    return mixed[1] if min(row, column) == AHEAD and max(row, column) == AHEAD + 1 else 0.0
+    return mixed[1] if min(row, column) == AHEAD_OFFSET and max(row, column) == AHEAD_OFFSET + 1 else 0.0
 
 
 def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params: MappingParams) -> SlotFilter:
@@ -132,15 +133,15 @@ def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params
     uy = math.sin(vehicle.heading)
     nx = slot_filter.into_x
     ny = slot_filter.into_y
-    middle_x = 0.5 * (state[0] + state[AHEAD])
-    middle_y = 0.5 * (state[1] + state[AHEAD + 1])
+    middle_x = 0.5 * (state[0] + state[AHEAD_OFFSET])
+    middle_y = 0.5 * (state[1] + state[AHEAD_OFFSET + 1])
     along = (ux, uy, 0.0, ux, uy, 0.0, nx * ux + ny * uy)
     turn = (
         vehicle.y - state[1],
         state[0] - vehicle.x,
         1.0,
-        vehicle.y - state[AHEAD + 1],
-        state[AHEAD] - vehicle.x,
+        vehicle.y - state[AHEAD_OFFSET + 1],
+        state[AHEAD_OFFSET] - vehicle.x,
         1.0,
         nx * (vehicle.y - middle_y) + ny * (middle_x - vehicle.x),
     )
@@ -148,9 +149,9 @@ def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params
     q_turn = params.heading_variance * distance
     covariance = tuple(
         slot_filter.covariance[number]
-        + q_along * along[number // STATES] * along[number % STATES]
-        + q_turn * turn[number // STATES] * turn[number % STATES]
-        for number in range(STATES * STATES)
+        + q_along * along[number // STATE_COUNT] * along[number % STATE_COUNT]
+        + q_turn * turn[number // STATE_COUNT] * turn[number % STATE_COUNT]
+        for number in range(STATE_COUNT * STATE_COUNT)
     )
     return slot_filter._replace(covariance=covariance)
 
@@ -159,35 +160,36 @@ def update_slot(
     slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose, measured: float, variance: float, gate: float
 ) -> SlotFilter:
     """Return the filter after an echo at ``measured`` [m] of ``variance`` [m2], if it came from the slot."""
-    echo = expected_echo(slot_filter, slot, sensor)
+    echo = predict_echo(slot_filter, slot, sensor)
     if not echo.is_known:
         return slot_filter
     h = echo.gradient
     p = slot_filter.covariance
-    gains = tuple(_row_product(p, h, number) for number in range(STATES))
+    gains = tuple(_row_product(p, h, number) for number in range(STATE_COUNT))
     prior = 0.0
-    for number in range(STATES):
+    for number in range(STATE_COUNT):
         prior += h[number] * gains[number]
     noise = CORRELATED_ECHOES * (variance + FRONT_SIGMA * FRONT_SIGMA)
     s = prior + noise
     innovation = measured - echo.predicted.distance
     if innovation * innovation > gate * (prior + variance + FRONT_SIGMA * FRONT_SIGMA):
         return slot_filter
-    state = tuple(slot_filter.state[number] + gains[number] / s * innovation for number in range(STATES))
+    state = tuple(slot_filter.state[number] + gains[number] / s * innovation for number in range(STATE_COUNT))
     covariance = tuple(
-        p[number] - gains[number // STATES] * gains[number % STATES] / s for number in range(STATES * STATES)
+        p[number] - gains[number // STATE_COUNT] * gains[number % STATE_COUNT] / s
+        for number in range(STATE_COUNT * STATE_COUNT)
     )
     return slot_filter._replace(state=state, covariance=covariance)
 
 
 def _row_product(covariance: tuple[float, ...], gradient: tuple[float, ...], row: int) -> float:
     total = 0.0
-    for number in range(STATES):
-        total += covariance[row * STATES + number] * gradient[number]
+    for number in range(STATE_COUNT):
+        total += covariance[row * STATE_COUNT + number] * gradient[number]
     return total
 
 
-def expected_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose) -> SlotEcho:
+def predict_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose) -> SlotEcho:
     """Return the echo that a sensor should measure of the slot; not known where the beam, or the slot's model, ends.
 
     Cones open by some degrees more or less: the nearest point of the widest must lie in the narrowest.
@@ -197,10 +199,10 @@ def expected_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPo
     length = CAR_LENGTH if is_parallel else CAR_WIDTH
     side = slot.row.side
     best = SlotEcho()
-    wide = sensor._replace(cone_sin=WIDEST * sensor.cone_sin)
+    wide = sensor._replace(cone_sin=CONE_SPREAD * sensor.cone_sin)
     for number in range(2):
         towards = -1.0 if number == 0 else 1.0
-        at = AHEAD * number
+        at = AHEAD_OFFSET * number
         corner = Point(slot_filter.state[at], slot_filter.state[at + 1])
         cos = math.cos(slot_filter.state[at + 2])
         sin = math.sin(slot_filter.state[at + 2])
@@ -209,8 +211,8 @@ def expected_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPo
         best = _nearer(best, predicted_range_to_segment(wide, corner, far_front), sensor, slot_filter, at)
         best = _nearer(best, predicted_range_to_segment(wide, corner, far_flank), sensor, slot_filter, at)
     if slot.depth < UNKNOWN_DEPTH:
-        best = _nearer(best, _range_to_end(slot_filter, wide), sensor, slot_filter, END)
-    narrow = sensor._replace(cone_sin=sensor.cone_sin / WIDEST)
+        best = _nearer(best, _range_to_end(slot_filter, wide), sensor, slot_filter, END_INDEX)
+    narrow = sensor._replace(cone_sin=sensor.cone_sin / CONE_SPREAD)
     is_in_view = in_field_of_view(narrow, best.predicted.x, best.predicted.y)
     return best._replace(is_known=best.is_known and is_in_view)
 
@@ -220,10 +222,12 @@ def _range_to_end(slot_filter: SlotFilter, sensor: SensorPose) -> PredictedRange
     state = slot_filter.state
     nx = slot_filter.into_x
     ny = slot_filter.into_y
-    a = state[END] - (state[0] * nx + state[1] * ny)
-    b = state[END] - (state[AHEAD] * nx + state[AHEAD + 1] * ny)
+    a = state[END_INDEX] - (state[0] * nx + state[1] * ny)
+    b = state[END_INDEX] - (state[AHEAD_OFFSET] * nx + state[AHEAD_OFFSET + 1] * ny)
     start = Point(state[0] + a * nx, state[1] + a * ny)
-    return predicted_range_to_segment(sensor, start, Point(state[AHEAD] + b * nx, state[AHEAD + 1] + b * ny))
+    return predicted_range_to_segment(
+        sensor, start, Point(state[AHEAD_OFFSET] + b * nx, state[AHEAD_OFFSET + 1] + b * ny)
+    )
 
 
 def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filter: SlotFilter, at: int) -> SlotEcho:
@@ -231,13 +235,13 @@ def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filt
     if new.origin == EchoOrigin.OUT_OF_VIEW or new.distance >= before.predicted.distance:
         return before
     u = direction_of(new, sensor)
-    is_end = at == END
+    is_end = at == END_INDEX
     is_known = new.origin == EchoOrigin.INTERIOR or (new.origin == EchoOrigin.START and not is_end)
     turn = u.y * (new.x - slot_filter.state[at]) - u.x * (new.y - slot_filter.state[at + 1]) if not is_end else 0.0
     deep = u.x * slot_filter.into_x + u.y * slot_filter.into_y
     gradient = tuple(
-        _derivative(number - at, u, turn) if not is_end else (deep if number == END else 0.0)
-        for number in range(STATES)
+        _derivative(number - at, u, turn) if not is_end else (deep if number == END_INDEX else 0.0)
+        for number in range(STATE_COUNT)
     )
     return SlotEcho(new, gradient, is_known)
 
@@ -247,37 +251,37 @@ def _derivative(state: int, u: Point, turn: float) -> float:
     return u.x if state == 0 else (u.y if state == 1 else (turn if state == 2 else 0.0))
 
 
-def filtered_slot(slot: SlotCandidate, slot_filter: SlotFilter, outline: VehicleOutline) -> SlotCandidate:
+def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: VehicleOutline) -> SlotCandidate:
     """Return the slot as the filter knows it, in a row turned by as much as its neighbours were.
 
-    Between neighbours that stand askew a perpendicular slot lies where the vehicle's middle will be.
+    Between neighbours that are misaligned a perpendicular slot lies where the vehicle's middle will be.
     """
     if not slot_filter.is_begun:
         return slot
     state = slot_filter.state
     heading = slot.row.frame.heading
     behind_turn = wrap_angle(state[2] - heading - slot.row.side * _slope(slot.behind))
-    ahead_turn = wrap_angle(state[AHEAD + 2] - heading - slot.row.side * _slope(slot.ahead))
+    ahead_turn = wrap_angle(state[AHEAD_OFFSET + 2] - heading - slot.row.side * _slope(slot.ahead))
     turn = 0.5 * (behind_turn + ahead_turn)
-    middle = Point(0.5 * (state[0] + state[AHEAD]), 0.5 * (state[1] + state[AHEAD + 1]))
+    middle = Point(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]))
     before = point_to_frame(middle.x, middle.y, slot.row.frame)
     rotated = Pose(middle.x, middle.y, heading + turn)
     origin = point_from_frame(-before.x, -before.y, rotated)
     frame = Pose(origin.x, origin.y, heading + turn)
     a = point_to_frame(state[0], state[1], frame)
-    b = point_to_frame(state[AHEAD], state[AHEAD + 1], frame)
+    b = point_to_frame(state[AHEAD_OFFSET], state[AHEAD_OFFSET + 1], frame)
     behind_front = slot.row.side * a.y
     ahead_front = slot.row.side * b.y
     front = 0.5 * (behind_front + ahead_front)
     depth = slot.depth
     if slot.depth < UNKNOWN_DEPTH:
-        depth = state[END] - (middle.x * slot_filter.into_x + middle.y * slot_filter.into_y)
+        depth = state[END_INDEX] - (middle.x * slot_filter.into_x + middle.y * slot_filter.into_y)
     deep = outline.half_length if slot.type == SlotType.PERPENDICULAR else 0.0
     behind = a.x - deep * slot.row.side * math.sin(state[2] - frame.heading)
-    ahead = b.x - deep * slot.row.side * math.sin(state[AHEAD + 2] - frame.heading)
+    ahead = b.x - deep * slot.row.side * math.sin(state[AHEAD_OFFSET + 2] - frame.heading)
     covariance = slot_filter.covariance
     behind_sigma = _sigma_along(covariance, 0, heading)
-    ahead_sigma = _sigma_along(covariance, AHEAD, heading)
+    ahead_sigma = _sigma_along(covariance, AHEAD_OFFSET, heading)
     return slot._replace(
         row=slot.row._replace(frame=frame),
         behind=slot.behind._replace(end=behind, end_front=behind_front, end_sigma=behind_sigma),
@@ -291,7 +295,7 @@ def _sigma_along(covariance: tuple[float, ...], at: int, heading: float) -> floa
     """Return the standard deviation [m] of a corner along the row."""
     cos = math.cos(heading)
     sin = math.sin(heading)
-    xx = covariance[at * STATES + at]
-    xy = covariance[at * STATES + at + 1]
-    yy = covariance[(at + 1) * STATES + at + 1]
+    xx = covariance[at * STATE_COUNT + at]
+    xy = covariance[at * STATE_COUNT + at + 1]
+    yy = covariance[(at + 1) * STATE_COUNT + at + 1]
     return math.sqrt(max(cos * cos * xx + 2.0 * cos * sin * xy + sin * sin * yy, 0.0))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from controller_fmu.planning.clearance import clearance
 from controller_fmu.planning.ladder import LADDER, MIN_MARGIN, ROOM_RESERVE, task_of, window_of
 from controller_fmu.planning.plan_store import (
+    ASKED,
     COUNT,
     EDGE_COUNT,
     GOAL_TIGHTER,
@@ -35,14 +36,16 @@ from controller_fmu.planning.room import see_room
 from controller_fmu.planning.setting import add_edges, is_inside
 from controller_fmu.planning.shorten import begin_path, path_cost, shorten
 from controller_fmu.planning.task import Corner, Request, Task
+from controller_fmu.planning.transitions import begin_transitions, try_transitions
 from controller_fmu.planning.tree import FOUND, SEARCHING, begin_tree, grow
 
 SCENE = 0
 PLANT = 1
 GROW = 2
 SHORTEN = 3
-SEE = 4
-OVER = 5
+TURN = 4
+SEE = 5
+OVER = 6
 
 PLANNING = 0
 PLANNED = 1
@@ -69,6 +72,8 @@ class Piece(NamedTuple):
     room: float = 0.0
     """Where the path begins what is free beyond the margin [m]; where the gear changes how far the piece before may go
     on; else how far beside the path a wheel that turns on the move may take the car."""
+    speed: float = 0.0
+    """Largest speed [m/s] of a piece of a transition, on which the wheel turns; 0: it is not one."""
 
 
 class Path(NamedTuple):
@@ -110,7 +115,7 @@ def status_of(store: PlanStore) -> int:
 def is_of(store: PlanStore, request: Request) -> bool:
     """Return whether the store holds the search for this request, in the scene that it holds."""
     numbers = _numbers(request)
-    for which in range(11):
+    for which in range(ASKED):
         if store.asked[which] != numbers[which]:
             return False
     return store.mark[COUNT] != OTHER_SCENE
@@ -130,7 +135,7 @@ def take_corner(store: PlanStore, number: int, corner: Corner) -> None:
 def begin(store: PlanStore, request: Request) -> None:
     """Forget all but the scene, and remember what is asked."""
     numbers = _numbers(request)
-    for which in range(11):
+    for which in range(ASKED):
         put_asked(store, which, numbers[which])
     put_mark(store, COUNT, 0)
     put_mark(store, PHASE, SCENE)
@@ -147,19 +152,24 @@ def step(store: PlanStore, request: Request) -> None:
     if phase == SCENE:
         _lay_out(store, request)
     elif phase == PLANT:
-        _plant(store, task)
+        _plant(store, request, task)
     elif phase == GROW:
         status = grow(store, task)
         if status == FOUND:
             begin_path(store, task)
             put_mark(store, PHASE, SHORTEN)
         elif status != SEARCHING:
-            _next_rung(store)
+            _next_rung(store, request)
     elif phase == SHORTEN:
         more = shorten(store, task)
         if not more:
             _keep(store, task)
-            _next_rung(store)
+            _next_rung(store, request)
+    elif phase == TURN:
+        more = try_transitions(store, request, task, PATH)
+        if not more:
+            put_mark(store, SEEN, 0)
+            put_mark(store, PHASE, SEE)
     elif phase == SEE:
         more = see_room(store, request, task)
         if not more:
@@ -174,13 +184,14 @@ def path_of(store: PlanStore) -> Path:
 
 def _piece(store: PlanStore, number: int) -> Piece:
     """Return a piece of the path that was found."""
-    return Piece(store.kept_way[number], store.kept_k[number], store.kept_room[number])
+    return Piece(store.kept_way[number], store.kept_k[number], store.kept_room[number], store.kept_speed[number])
 
 
-def _numbers(request: Request) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+def _numbers(request: Request) -> tuple[float, ...]:
     start = request.start
     goal = request.goal
     car = request.car
+    dynamics = request.dynamics
     return (
         start.x,
         start.y,
@@ -193,6 +204,12 @@ def _numbers(request: Request) -> tuple[float, float, float, float, float, float
         car.half_width,
         car.curvature,
         request.margin,
+        dynamics.wheelbase,
+        dynamics.rate,
+        dynamics.curvature,
+        dynamics.speed,
+        dynamics.acceleration,
+        dynamics.deceleration,
     )
 
 
@@ -230,12 +247,12 @@ def _lay_out(store: PlanStore, request: Request) -> None:
         put_mark(store, PHASE, PLANT)
 
 
-def _plant(store: PlanStore, task: Task) -> None:
+def _plant(store: PlanStore, request: Request, task: Task) -> None:
     """Begin the search of the rung in hand, unless not even a point could get through."""
     block_route(store, store.mark[EDGE_COUNT], task)
     measure_route(store, task)
     if route_left(store, task.root.x, task.root.y, task.window) >= FAR:
-        _next_rung(store)
+        _next_rung(store, request)
         return
     begin_tree(store, task)
     put_mark(store, PHASE, GROW)
@@ -272,14 +289,15 @@ def cusps_of(store: PlanStore) -> int:
     return found
 
 
-def _next_rung(store: PlanStore) -> None:
+def _next_rung(store: PlanStore, request: Request) -> None:
     """Go on to the next search, or end."""
     rung = store.mark[RUNG] + 1
     kept = store.mark[KEPT_COUNT] > 0
     last = rung >= len(LADDER)
     if kept and (last or not LADDER[rung].also):
         put_mark(store, SEEN, 0)
-        put_mark(store, PHASE, SEE)
+        tries = begin_transitions(store, request, PATH)
+        put_mark(store, PHASE, TURN if tries else SEE)
     elif last:
         _over(store, NO_WAY)
     else:

@@ -18,7 +18,7 @@ BUCKETS = 2048
 TALLIES = 8192
 WORDS = 128
 PIECES = 256
-ASKED = 11
+ASKED = 17
 HEARD = 128
 """Places kept of what one side's sensor has heard."""
 SIDES = 2
@@ -68,11 +68,16 @@ class PlanStore(NamedTuple):
     word_e: Annotated[Floats, Column("d", WORDS, "m", "way of its fifth piece")]
     piece_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the path")]
     piece_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
+    piece_speed: Annotated[Floats, Column("d", PIECES, "m/s", "its largest speed if its curvature is a transition's")]
     piece_x: Annotated[Floats, Column("d", PIECES, "m", "x where it begins")]
     piece_y: Annotated[Floats, Column("d", PIECES, "m", "y where it begins")]
     piece_h: Annotated[Floats, Column("d", PIECES, "rad", "heading where it begins")]
     kept_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the best path yet")]
     kept_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
+    kept_speed: Annotated[Floats, Column("d", PIECES, "m/s", "its largest speed: see Piece")]
+    joint_share: Annotated[Floats, Column("d", PIECES, "1", "share of the transition wished for about its begin")]
+    arc_way: Annotated[Floats, Column("d", PIECES, "m", "length of a piece between its transitions")]
+    arc_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature there")]
     kept_room: Annotated[Floats, Column("d", PIECES, "m", "room about its begin: see Piece")]
     corner_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the scene asked about")]
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
@@ -120,6 +125,10 @@ KEPT_RUNG = 17
 GOAL_TIGHTER = 18
 SEEN = 20
 """Pieces of the path kept about whose begin the room is known."""
+JOINT = 21
+"""The transition that is tried now."""
+SLICES = 22
+"""Arcs of a transition on one side of a stop."""
 
 BEST_COST = 0
 BEST_WAY = 1
@@ -238,7 +247,33 @@ def put_kept(store: PlanStore, piece: int, way: float, k: float) -> None:
     """Set a piece of the best path yet; of its room nothing is known."""
     store.kept_way[piece] = way
     store.kept_k[piece] = k
+    store.kept_speed[piece] = 0.0
     put_room(store, piece, 0.0)
+
+
+def put_kept_speed(store: PlanStore, piece: int, speed: float) -> None:
+    """Set the largest speed of a piece of the best path yet."""
+    store.kept_speed[piece] = speed
+
+
+def put_piece_speed(store: PlanStore, piece: int, speed: float) -> None:
+    """Set the largest speed of a piece of the path."""
+    store.piece_speed[piece] = speed
+
+
+def put_share(store: PlanStore, joint: int, share: float) -> None:
+    """Set the share of the transition about the begin of a piece."""
+    store.joint_share[joint] = share
+
+
+def put_arc_curvature(store: PlanStore, piece: int, k: float) -> None:
+    """Set the curvature of a piece between its transitions."""
+    store.arc_k[piece] = k
+
+
+def put_arc(store: PlanStore, piece: int, way: float) -> None:
+    """Set the length of a piece between its transitions."""
+    store.arc_way[piece] = way
 
 
 def put_room(store: PlanStore, piece: int, room: float) -> None:

@@ -45,7 +45,9 @@ def see_room(store: PlanStore, request: Request, task: Task) -> bool:
     piece = store.mark[SEEN]
     task = task._replace(margin=store.measure[KEPT_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
-    if piece == 0:
+    if store.kept_speed[piece] > 0.0 or (piece > 0 and store.kept_speed[piece - 1] > 0.0):
+        put_room(store, piece, 0.0)
+    elif piece == 0:
         put_room(store, piece, _about(store, start, piece, task))
     elif store.kept_way[piece - 1] * store.kept_way[piece] < 0.0:
         put_room(store, piece, _beyond(store, start, piece, task))
@@ -146,10 +148,12 @@ def _ramp(store: PlanStore, piece: int) -> float:
 
 
 def _gear_way(store: PlanStore, piece: int, turn: int) -> float:
-    """Return the way [m] driven in a piece's gear from its begin on (``turn`` 1), or before it (-1)."""
+    """Return the way [m] in a piece's gear from its begin on (``turn`` 1), or before it (-1), up to a transition."""
     way = 0.0
     number = piece if turn > 0 else piece - 1
     while 0 <= number < store.mark[KEPT_COUNT] and store.kept_way[number] * store.kept_way[piece] > 0.0:
+        if store.kept_speed[number] > 0.0:
+            return way
         way += abs(store.kept_way[number])
         number += turn
     return way

@@ -42,6 +42,6 @@ def way_before(path: Path, whole: OneGear, piece: int) -> float:
 def trimmed(path: Path) -> Path:
     """Return the path without last pieces that are not worth turning the wheel for."""
     used = path.used
-    while used > 1 and abs(path.pieces[used - 1].way) < SHORTEST:
+    while used > 1 and abs(path.pieces[used - 1].way) < SHORTEST and path.pieces[used - 1].speed == 0.0:
         used -= 1
     return path._replace(used=used)

@@ -32,6 +32,19 @@ class PlannedCar(NamedTuple):
     """Largest curvature of the rear axle's path [1/m]."""
 
 
+class Dynamics(NamedTuple):
+    """How the vehicle drives a path; with a rate of 0 the wheel is taken to turn at rest."""
+
+    wheelbase: float = 0.0
+    rate: float = 0.0
+    """Of the front wheels [rad/s]."""
+    curvature: float = 0.0
+    """Largest curvature [1/m] that leaves some of the lock for tracking."""
+    speed: float = 0.0
+    acceleration: float = 0.0
+    deceleration: float = 0.0
+
+
 class Request(NamedTuple):
     """What is asked for: a path from one pose to another."""
 
@@ -40,6 +53,7 @@ class Request(NamedTuple):
     car: PlannedCar = PlannedCar()
     margin: float = 0.0
     """Clearance [m] wished for; where it cannot be kept, less is tried."""
+    dynamics: Dynamics = Dynamics()
 
 
 class SearchWindow(NamedTuple):

@@ -28,7 +28,7 @@ from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import Sight, take_scene
 from controller_fmu.valet.signals import ValetInput
-from controller_fmu.valet.slot import body_of, goal_in, goal_of, is_in_place, stands_in_road
+from controller_fmu.valet.slot import body_of, dynamics_of, goal_in, goal_of, is_in_place, stands_in_road
 from controller_fmu.valet.state import ValetState
 from modelkit.vocabulary import Pose
 
@@ -62,7 +62,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
-        request = Request(pose, goal, body_of(params), params.plan.margin)
+        request = Request(pose, goal, body_of(params), params.plan.margin, dynamics_of(params))
         if (state.step == Step.SHOWN or not params.search.active) and is_in_place(pose, goal, params):
             return state._replace(request=request, searched=1, plans=state.plans + 1, path=AT_GOAL, sight=Sight())
     take_scene(store, params, state.seen)

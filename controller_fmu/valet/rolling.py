@@ -17,16 +17,15 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.ramp import on_ramp, ramp_length
-from controller_fmu.planning.plan import Path
+from controller_fmu.planning.plan import Path, Piece
 from controller_fmu.planning.room import OF_MARGIN, OF_ROOM, SAME
 from controller_fmu.planning.stretch import OneGear, stretch_of, way_before
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.slot import QUICKEST, RATE_SHARE
 from modelkit.maths import sign
 
 SLOWEST = 0.12
 """[m/s]"""
-RATE_SHARE = 0.9
-"""Of the wheel's rate that a ramp asks for; the rest is for tracking."""
 ROOMIEST = 1.5
 """A ramp takes the car off by ``drive.rolling`` times this at most, and by what the planner finds room for."""
 BEHIND = 1e-6
@@ -41,8 +40,6 @@ ROOMY = 0.05
 """Where the plan leaves less clearance [m] the wheel turns at rest."""
 SETTLED = 0.3
 """So long [s] before its last standstill the car tracks no more: the wheel is at rest when it is straight."""
-QUICKEST = 1.0
-"""Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
 
 
 class Joint(NamedTuple):
@@ -99,10 +96,13 @@ def _joint(path: Path, whole: OneGear, piece: int, at: float, params: ValetParam
     """Return the joint at the end of ``piece``, ``at`` [m] from the begin of the stretch."""
     if piece >= whole.last:
         return Joint()
+    if is_transition(path, piece + 1):
+        way = min(abs(path.pieces[piece].way), abs(path.pieces[piece + 1].way))
+        return Joint(way, path.pieces[piece + 1].k - path.pieces[piece].k)
     off = _off_about(path, piece + 1, params)
     if off <= 0.0:
         return Joint()
-    longest = 2.0 * min(at, whole.length - at)
+    longest = 2.0 * min(_way_to_transition(path, whole, piece, -1), _way_to_transition(path, whole, piece + 1, 1))
     k0 = path.pieces[piece].k
     k1 = path.pieces[piece + 1].k
     if abs(k1 - k0) < SAME:
@@ -111,6 +111,24 @@ def _joint(path: Path, whole: OneGear, piece: int, at: float, params: ValetParam
     base = params.car.wheelbase
     swing = math.atan(base * k1) - math.atan(base * k0)
     return Joint(ramp, k1 - k0) if speed_on(swing / ramp, params) >= SLOWEST else Joint()
+
+
+def _way_to_transition(path: Path, whole: OneGear, piece: int, turn: int) -> float:
+    """Return the way [m] from a piece on (``turn`` 1), or back (-1), to a transition or to the end of the stretch."""
+    way = 0.0
+    number = piece
+    while whole.first <= number <= whole.last:
+        if path.pieces[number].speed > 0.0:
+            return way
+        way += abs(path.pieces[number].way)
+        number += turn
+    return way
+
+
+def is_transition(path: Path, piece: int) -> bool:
+    """Return whether the path has a transition about the begin of ``piece``; of the number of pieces: at its end."""
+    before = path.pieces[piece - 1].speed if piece > 0 else 0.0
+    return before > 0.0 or (piece < path.used and path.pieces[piece].speed > 0.0)
 
 
 def speed_on(turning: float, params: ValetParams) -> float:
@@ -154,6 +172,7 @@ def turning_at(path: Path, whole: OneGear, place: float, params: ValetParams) ->
         share = 1.0 if on >= joint.ramp else 0.0
         if 0.0 < on < joint.ramp:
             share = on / joint.ramp
+        if 0.0 < on < joint.ramp and not is_transition(path, number + 1):
             slope += joint.jump / joint.ramp
         curvature += share * (path.pieces[number + 1].k - path.pieces[number].k)
     bent = params.car.wheelbase * curvature
@@ -166,14 +185,19 @@ def ahead_of(path: Path, piece: int, left: float, params: ValetParams) -> Ahead:
     here = way_before(path, whole, piece + 1) - left
     speed = speed_on(turning_at(path, whole, here, params), params)
     at = 0.0
-    for number in range(whole.first, whole.last):
+    for number in range(whole.first, whole.last + 1):
+        limit = path.pieces[number].speed
+        if number >= piece and limit > 0.0:
+            speed = min(speed, math.sqrt(limit * limit + 2.0 * params.drive.deceleration * max(at - here, 0.0)))
         at += abs(path.pieces[number].way)
         ramp = _joint(path, whole, number, at, params).ramp
-        if number >= piece and ramp <= 0.0:
+        if piece <= number < whole.last and ramp <= 0.0:
             return Ahead(at - here, speed, rest_before(path, number + 1, params))
+        if number == whole.last or is_transition(path, number + 1):
+            ramp = 0.0
         for share in (-0.5, 0.0, 0.5):
             place = at + share * ramp
-            if place > here:
+            if ramp > 0.0 and place > here:
                 there = speed_on(turning_at(path, whole, place + BEHIND, params), params)
                 speed = min(speed, math.sqrt(there * there + 2.0 * params.drive.deceleration * (place - here)))
     rest = rest_before(path, whole.last + 1, params)
@@ -184,9 +208,12 @@ def rest_before(path: Path, piece: int, params: ValetParams) -> WheelAtRest:
     """Return the standstill before ``piece``; of the number of pieces: that at the end."""
     before = aim_at(path, piece - 1, 0.0, params).curvature if piece > 0 else 0.0
     then = aim_at(path, piece, abs(path.pieces[piece].way), params).curvature if piece < path.used else 0.0
+    base = params.car.wheelbase
     off = _off_at_rest(path, piece, params)
     ends = piece >= path.used
     settled = SETTLED if ends else 0.0
+    if is_transition(path, piece):
+        return _rest_in_transition(path, piece, abs(math.atan(base * then) - math.atan(base * before)), then, params)
     if off <= 0.0 or path.margin < ROOMY:
         return WheelAtRest(then=then)
     if abs(then - before) < SAME:
@@ -201,6 +228,19 @@ def rest_before(path: Path, piece: int, params: ValetParams) -> WheelAtRest:
     return WheelAtRest(
         max(early.time, settled), late.time, 0.0 if same_gear or piece == 0 else early.over + late.over, then
     )
+
+
+def _rest_in_transition(path: Path, piece: int, swing: float, then: float, params: ValetParams) -> WheelAtRest:
+    """Return the standstill within a transition: the wheel turns for half of an arc's time before and behind it."""
+    law = params.drive
+    rate = params.car.steering.rate_limit / params.car.steering.ratio
+    most = swing / rate
+    early = path.pieces[piece - 1] if piece > 0 else Piece()
+    late = path.pieces[piece] if piece < path.used else Piece()
+    before = 0.5 * math.sqrt(2.0 * abs(early.way) / law.deceleration) if early.speed > 0.0 else 0.0
+    after = 0.5 * math.sqrt(2.0 * abs(late.way) / QUICKEST) if late.speed > 0.0 else 0.0
+    settled = 0.0 if piece < path.used else SETTLED
+    return WheelAtRest(max(min(before, most), settled), min(after, most), then=then)
 
 
 class WheelTurn(NamedTuple):

@@ -3,6 +3,7 @@
 import math
 
 from controller_fmu.common.external_slot import SlotKind
+from controller_fmu.planning.task import Dynamics
 from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.in_gap import along_of
@@ -11,6 +12,12 @@ from modelkit.car import car_length, largest_curvature
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
+RATE_SHARE = 0.9
+"""Of the wheel's rate that a transition asks for; the rest is for tracking."""
+LOCK_SHARE = 0.95
+"""Of the largest curvature that a path with all its transitions takes."""
+QUICKEST = 1.0
+"""Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
 LEADS_ON = 0.34
 """A slot leads on along the way if the cosine between them is larger: it is turned by less than 70 deg."""
 
@@ -24,6 +31,20 @@ def body_of(params: ValetParams) -> Body:
     length = car_length(car)
     curvature = params.plan.curvature_share * largest_curvature(car)
     return Body(0.5 * length - car.rear_overhang, 0.5 * length, 0.5 * car.width, curvature)
+
+
+def dynamics_of(params: ValetParams) -> Dynamics:
+    """Return how the car drives a path; its rate is 0 where the wheel may not turn on the move.
+
+    Nor does a path into a slot that was found have transitions: its goal moves by what is measured on the way.
+    """
+    steering = params.car.steering
+    law = params.drive
+    rate = 0.0
+    if law.rolling > 0.0 and not params.search.active:
+        rate = RATE_SHARE * steering.rate_limit / steering.ratio
+    curvature = LOCK_SHARE * largest_curvature(params.car)
+    return Dynamics(params.car.wheelbase, rate, curvature, law.speed, QUICKEST, law.deceleration)
 
 
 def goal_of(params: ValetParams, slot: GivenSlot, now: Pose) -> Pose:

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from controller_fmu.planning.plan import PLANNED, PLANNING
-from controller_fmu.planning.task import Request
+from controller_fmu.planning.task import Dynamics, Request
 from fmus.compiler import translate
 from modelkit.vocabulary import Pose
 from tests.compiler.c_model import CModel
@@ -44,7 +44,8 @@ def twins(translation: Any, folder: Any, scene: Any, request: Request, each: Any
 
 
 def test_between_two_boxes(translation: Any, folder: Any) -> None:
-    request = Request(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    dynamics = Dynamics(2.8, 0.45, 0.95 * CAR.curvature, 0.8, 1.0, 0.5)
+    request = Request(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), CAR, 0.1, dynamics)
     assert twins(translation, folder, scene_of(BOXES), request, 9).status == PLANNED
 
 

@@ -1,0 +1,389 @@
+"""The path found, with curvature transitions: the vehicle turns its wheel while it drives, also about a stop.
+
+Where the curvature jumps, the front wheels turn at their rate for as long as that takes: at speed within a gear, else
+while the vehicle slows down to a stop and while it sets out again. A transition is a row of short arcs of equal
+duration. Then the lengths of the pieces between are solved, so that the path still ends at the goal: Newton's method,
+least squares of changes in proportion to the lengths. A transition is shortened where a piece would have no length
+left, or the outline would come too near to an obstacle.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.planning.clearance import free_way
+from controller_fmu.planning.plan_store import (
+    JOINT,
+    KEPT_COUNT,
+    KEPT_MARGIN,
+    PIECE_COUNT,
+    SLICES,
+    PlanStore,
+    put_arc,
+    put_arc_curvature,
+    put_kept,
+    put_kept_speed,
+    put_mark,
+    put_piece,
+    put_piece_speed,
+    put_share,
+)
+from controller_fmu.planning.task import Dynamics, Request, Task, drive
+from modelkit.maths import clamp, sign, wrap_angle
+from modelkit.vocabulary import Pose
+
+MAX_SLICES, MIN_SLICES = 4, 2
+"""Arcs of a transition on one side of a stop; half as many on one side of a joint in one gear."""
+MAX_ITERATIONS = 10
+KEPT_SHARE = 0.8
+"""Share of the margin that a path with transitions keeps."""
+SHORTER = 0.5
+"""A transition that does not fit is shortened by this factor ..."""
+MIN_SHARE, MIN_SHARE_IN_GEAR = 0.25, 0.5
+"""... and left out if less than this is left of it; a ramp beside the path is as good in one gear."""
+LESS_BENT = 0.6
+"""A piece that is too short for its transitions is bent less by this factor ..."""
+MIN_BEND = 0.3
+"""... but no less than this share of its curvature."""
+MIN_ARC = 0.01
+"""Least length [m] of an arc or a line between two transitions."""
+CONVERGED = 1e-8
+"""Distance [m] and heading [rad] that the path's end may be off the goal."""
+SAME = 1e-6
+"""Curvatures nearer than this [1/m] are one."""
+SINGULAR = 1e-6
+"""Least determinant, as a share of what it is of directions at right angles."""
+SOLVED = -1
+UNSOLVED = -2
+ALL_JOINTS = -1
+NO_JOINT = -2
+
+
+class Transition(NamedTuple):
+    """How the front wheels turn about the begin of a piece."""
+
+    stops: bool = False
+    angle_before: float = 0.0
+    """[rad]"""
+    angle_after: float = 0.0
+    early: float = 0.0
+    """Time [s] for which they turn before the begin of the piece."""
+    late: float = 0.0
+    """And behind it."""
+    speed: float = 0.0
+    """Largest speed [m/s]."""
+
+
+def begin_transitions(store: PlanStore, request: Request, most: int) -> bool:
+    """Wish for all transitions in full; returns whether the path, of at most ``most`` pieces, can have any."""
+    count = store.mark[KEPT_COUNT]
+    put_mark(store, JOINT, ALL_JOINTS)
+    put_mark(store, SLICES, MAX_SLICES)
+    for joint in range(count + 1):
+        put_share(store, joint, 1.0)
+    _unbend(store, request.dynamics)
+    if request.dynamics.rate <= 0.0 or count < 3:
+        return False
+    while store.mark[SLICES] > MIN_SLICES and _pieces_with(store, request.dynamics) > most:
+        put_mark(store, SLICES, store.mark[SLICES] - 1)
+    return True
+
+
+def try_transitions(store: PlanStore, request: Request, task: Task, most: int) -> bool:
+    """Try all transitions, or one more; returns whether there is more to try, else the path has those that fit.
+
+    If not all of them fit, one is tried after the other, if the path fits with what tracking needs of the lock: first
+    those about a stop, where the vehicle would stand for as long as the wheel turns.
+    """
+    joints = store.mark[KEPT_COUNT] + 1
+    fits = _fit(store, request, task, most)
+    number = store.mark[JOINT]
+    if number == ALL_JOINTS:
+        if fits:
+            _keep(store)
+            return False
+        for joint in range(joints):
+            put_share(store, joint, 0.0)
+        put_mark(store, JOINT, NO_JOINT)
+        return True
+    if number == NO_JOINT:
+        if not fits:
+            return False
+        number = 0
+    elif not fits:
+        joint = number % joints
+        share = SHORTER * store.joint_share[joint]
+        least = MIN_SHARE if number < joints else MIN_SHARE_IN_GEAR
+        put_share(store, joint, share if share >= least else 0.0)
+        number = number if share >= least else number + 1
+    else:
+        number += 1
+    while number < 2 * joints and not _is_worth(store, number, joints):
+        number += 1
+    put_mark(store, JOINT, number)
+    if number < 2 * joints:
+        if store.joint_share[number % joints] <= 0.0:
+            put_share(store, number % joints, 1.0)
+        return True
+    fits = _fit(store, request, task, most)
+    if fits:
+        _keep(store)
+    return False
+
+
+def _is_worth(store: PlanStore, number: int, joints: int) -> bool:
+    """Return whether a transition is to be tried: in a first round those about a stop, in a second one the others."""
+    joint = number % joints
+    k0 = store.kept_k[joint - 1] if joint > 0 else 0.0
+    k1 = store.kept_k[joint] if joint + 1 < joints else 0.0
+    return abs(k1 - k0) >= SAME and _stops_at(store, joint) == (number < joints)
+
+
+def _stops_at(store: PlanStore, joint: int) -> bool:
+    """Return whether the vehicle stands where a piece begins."""
+    if joint == 0 or joint == store.mark[KEPT_COUNT]:
+        return True
+    return store.kept_way[joint - 1] * store.kept_way[joint] < 0.0
+
+
+def _fit(store: PlanStore, request: Request, task: Task, most: int) -> bool:
+    """Lay out the path with the transitions wished for; returns whether it fits.
+
+    Pieces too short for their transitions are bent less.
+    """
+    _unbend(store, request.dynamics)
+    if _pieces_with(store, request.dynamics) > most:
+        return False
+    start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
+    short = _solve(store, start, request.goal.heading, request.dynamics)
+    while short >= 0:
+        if abs(store.arc_k[short]) <= MIN_BEND * abs(store.kept_k[short]):
+            return False
+        put_arc_curvature(store, short, LESS_BENT * store.arc_k[short])
+        short = _solve(store, start, request.goal.heading, request.dynamics)
+    return short == SOLVED and _is_free(store, task._replace(margin=KEPT_SHARE * store.measure[KEPT_MARGIN]))
+
+
+def _unbend(store: PlanStore, dynamics: Dynamics) -> None:
+    """Give all pieces the curvature that they were found with, but for what tracking needs of the lock."""
+    for piece in range(store.mark[KEPT_COUNT]):
+        put_arc_curvature(store, piece, clamp(store.kept_k[piece], -dynamics.curvature, dynamics.curvature))
+
+
+def _pieces_with(store: PlanStore, dynamics: Dynamics) -> int:
+    """Return how many pieces the path has with its transitions."""
+    pieces = store.mark[KEPT_COUNT]
+    for joint in range(store.mark[KEPT_COUNT] + 1):
+        transition = _transition(store, joint, dynamics)
+        pieces += _slices(store, transition.stops, transition.early) + _slices(store, transition.stops, transition.late)
+    return pieces
+
+
+def _slices(store: PlanStore, stops: bool, time: float) -> int:
+    """Return the number of arcs on one side of a transition."""
+    if time <= 0.0:
+        return 0
+    return store.mark[SLICES] if stops else store.mark[SLICES] // 2
+
+
+def _transition(store: PlanStore, joint: int, dynamics: Dynamics) -> Transition:
+    """Return the transition about the begin of a piece; of the number of pieces: that at the end.
+
+    A share of it in one gear is driven at that share of the speed. About a stop it is that share of the turn: the wheel
+    turns longer where the vehicle slows down than where it sets out, by the root of the accelerations, as the same
+    way costs the same time there.
+    """
+    count = store.mark[KEPT_COUNT]
+    k0 = store.arc_k[joint - 1] if joint > 0 else 0.0
+    k1 = store.arc_k[joint] if joint < count else 0.0
+    before = math.atan(dynamics.wheelbase * k0)
+    after = math.atan(dynamics.wheelbase * k1)
+    ends = joint == 0 or joint == count
+    stops = _stops_at(store, joint)
+    share = store.joint_share[joint]
+    if abs(k1 - k0) < SAME or share <= 0.0:
+        return Transition(stops, before, after)
+    time = abs(after - before) / dynamics.rate
+    if not stops:
+        return Transition(stops, before, after, 0.5 * time, 0.5 * time, share * dynamics.speed)
+    early = 0.0 if joint == 0 else 1.0
+    if not ends:
+        quick = math.sqrt(dynamics.acceleration)
+        early = quick / (quick + math.sqrt(dynamics.deceleration))
+    return Transition(stops, before, after, early * share * time, (1.0 - early) * share * time, dynamics.speed)
+
+
+def _way_of_time(time: float, transition: Transition, acceleration: float) -> float:
+    """Return the way [m] from the begin of a piece, a stop or not, that takes ``time`` [s]."""
+    speed = transition.speed
+    if not transition.stops:
+        return speed * time
+    ramp = speed / acceleration
+    return 0.5 * acceleration * time * time if time < ramp else speed * (time - 0.5 * ramp)
+
+
+def _bent_way(store: PlanStore, piece: int) -> float:
+    """Return the length [m] in which a piece turns as it did, with the curvature in hand."""
+    k = store.arc_k[piece]
+    return abs(store.kept_way[piece] * (store.kept_k[piece] / k if k != 0.0 else 1.0))
+
+
+def _solve(store: PlanStore, start: Pose, heading: float, dynamics: Dynamics) -> int:
+    """Lay out the path with lengths so that it ends at the goal; returns a piece that is too short if any is."""
+    count = store.mark[KEPT_COUNT]
+    for piece in range(count):
+        before = _transition(store, piece, dynamics)
+        after = _transition(store, piece + 1, dynamics)
+        late = _way_of_time(before.late, before, dynamics.acceleration)
+        early = _way_of_time(after.early, after, dynamics.deceleration)
+        put_arc(store, piece, _bent_way(store, piece) - late - early)
+    for _ in range(MAX_ITERATIONS):
+        end = _lay_out(store, start, dynamics)
+        turn = wrap_angle(heading - end.heading)
+        if abs(end.x) + abs(end.y) + abs(turn) < CONVERGED:
+            for piece in range(count):
+                if store.arc_way[piece] < MIN_ARC:
+                    return piece
+            return SOLVED
+        solved = _correct_lengths(store, end, turn)
+        if not solved:
+            return UNSOLVED
+    return UNSOLVED
+
+
+def _lay_out(store: PlanStore, start: Pose, dynamics: Dynamics) -> Pose:
+    """Write the pieces of the path with transitions, and the lengths in hand between; returns where it ends."""
+    put_mark(store, PIECE_COUNT, 0)
+    count = store.mark[KEPT_COUNT]
+    pose = start
+    for joint in range(count + 1):
+        transition = _transition(store, joint, dynamics)
+        if joint > 0:
+            pose = _add_early(store, pose, transition, sign(store.kept_way[joint - 1]), dynamics)
+        if joint < count:
+            direction = sign(store.kept_way[joint])
+            pose = _add_late(store, pose, transition, direction, dynamics)
+            pose = _add(store, pose, direction * store.arc_way[joint], store.arc_k[joint], 0.0)
+    return pose
+
+
+def _add_early(store: PlanStore, pose: Pose, transition: Transition, direction: float, dynamics: Dynamics) -> Pose:
+    """Add the arcs of a transition before the begin of a piece."""
+    count = _slices(store, transition.stops, transition.early)
+    rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
+    for number in range(count):
+        each = transition.early / count
+        left = transition.early - number * each
+        far = _way_of_time(left, transition, dynamics.deceleration)
+        near = _way_of_time(left - each, transition, dynamics.deceleration)
+        angle = transition.angle_before + rate * (number + 0.5) * each
+        pose = _add(store, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, transition.speed)
+    return pose
+
+
+def _add_late(store: PlanStore, pose: Pose, transition: Transition, direction: float, dynamics: Dynamics) -> Pose:
+    """Add the arcs of a transition behind the begin of a piece; setting out, no faster than planned."""
+    count = _slices(store, transition.stops, transition.late)
+    rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
+    for number in range(count):
+        each = transition.late / count
+        near = _way_of_time(number * each, transition, dynamics.acceleration)
+        far = _way_of_time((number + 1) * each, transition, dynamics.acceleration)
+        angle = transition.angle_after - rate * (transition.late - (number + 0.5) * each)
+        speed = transition.speed
+        if transition.stops:
+            speed = min(speed, dynamics.acceleration * (number + 1) * each)
+        pose = _add(store, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, speed)
+    return pose
+
+
+def _add(store: PlanStore, pose: Pose, way: float, k: float, speed: float) -> Pose:
+    """Add a piece; returns where it ends."""
+    number = store.mark[PIECE_COUNT]
+    put_piece(store, number, pose, way, k)
+    put_piece_speed(store, number, speed)
+    put_mark(store, PIECE_COUNT, number + 1)
+    return drive(pose, way, k)
+
+
+class EndSlope(NamedTuple):
+    """By how much the path's end moves where a piece becomes longer [m/m, rad/m]."""
+
+    x: float
+    y: float
+    heading: float
+
+
+def _end_slope(store: PlanStore, number: int, direction: float, end: Pose) -> EndSlope:
+    """Return by how much the end moves with the length of a piece laid out."""
+    k = store.piece_k[number]
+    heading = store.piece_h[number]
+    return EndSlope(
+        direction * (math.cos(heading) - k * (end.y - store.piece_y[number])),
+        direction * (math.sin(heading) + k * (end.x - store.piece_x[number])),
+        direction * k,
+    )
+
+
+def _correct_lengths(store: PlanStore, end: Pose, turn: float) -> bool:
+    """Change the lengths so that the end moves to the goal, to first order; returns whether they can.
+
+    With J the slopes and W the lengths, the change is W J^T (J W J^T)^-1 e: a matrix of three by three, by its minors.
+    """
+    xx = 0.0
+    xy = 0.0
+    xh = 0.0
+    yy = 0.0
+    yh = 0.0
+    hh = 0.0
+    piece = 0
+    for number in range(store.mark[PIECE_COUNT]):
+        if store.piece_speed[number] == 0.0:
+            way = store.kept_way[piece]
+            slope = _end_slope(store, number, sign(way), end)
+            weight = _bent_way(store, piece)
+            xx += weight * slope.x * slope.x
+            xy += weight * slope.x * slope.y
+            xh += weight * slope.x * slope.heading
+            yy += weight * slope.y * slope.y
+            yh += weight * slope.y * slope.heading
+            hh += weight * slope.heading * slope.heading
+            piece += 1
+    m00 = yy * hh - yh * yh
+    m01 = xh * yh - xy * hh
+    m02 = xy * yh - xh * yy
+    size = xx * m00 + xy * m01 + xh * m02
+    if size < SINGULAR * (xx + yy) * (xx + yy) * hh:
+        return False
+    m11 = xx * hh - xh * xh
+    m12 = xy * xh - xx * yh
+    m22 = xx * yy - xy * xy
+    x = (-m00 * end.x - m01 * end.y + m02 * turn) / size
+    y = (-m01 * end.x - m11 * end.y + m12 * turn) / size
+    h = (-m02 * end.x - m12 * end.y + m22 * turn) / size
+    piece = 0
+    for number in range(store.mark[PIECE_COUNT]):
+        if store.piece_speed[number] == 0.0:
+            way = store.kept_way[piece]
+            slope = _end_slope(store, number, sign(way), end)
+            change = _bent_way(store, piece) * (slope.x * x + slope.y * y + slope.heading * h)
+            put_arc(store, piece, store.arc_way[piece] + change)
+            piece += 1
+    return True
+
+
+def _is_free(store: PlanStore, task: Task) -> bool:
+    """Return whether the path laid out keeps its margin."""
+    for number in range(store.mark[PIECE_COUNT]):
+        way = store.piece_way[number]
+        pose = Pose(store.piece_x[number], store.piece_y[number], store.piece_h[number])
+        if free_way(store, pose, sign(way), store.piece_k[number], abs(way), task) < abs(way):
+            return False
+    return True
+
+
+def _keep(store: PlanStore) -> None:
+    """Keep the path as it is laid out."""
+    for number in range(store.mark[PIECE_COUNT]):
+        put_kept(store, number, store.piece_way[number], store.piece_k[number])
+        put_kept_speed(store, number, store.piece_speed[number])
+    put_mark(store, KEPT_COUNT, store.mark[PIECE_COUNT])

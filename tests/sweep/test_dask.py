@@ -1,6 +1,7 @@
 """A study on a Dask cluster of separate processes on this machine, one of them killed on the way."""
 
 import gc
+import os
 import signal
 import socket
 import subprocess
@@ -112,3 +113,15 @@ def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() ->
         finally:
             own.close()
     assert not own._folder.exists()
+
+
+@pytest.mark.release
+@pytest.mark.skipif(os.name != "posix", reason="ulimit")
+def test_too_few_descriptors_are_said_in_a_line(tmp_path: Path) -> None:
+    """Dask's tracebacks were 72 lines besides."""
+    words = [sys.executable, "-m", "orchestrator", "sweep", "guo2015-trial", "--stride", "200", "--no-page", "--dask"]
+    command = ["sh", "-c", 'ulimit -n 32; exec "$@"', "sh", *words, "--out", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 2
+    assert [line for line in done.stderr.splitlines() if "runs" not in line] == done.stderr.splitlines()[-1:]
+    assert "more memory, files or threads than there are" in done.stderr

@@ -23,6 +23,9 @@ class QuietScheduler(distributed.Scheduler):  # type: ignore[misc]
         """Open no socket."""
 
 
+START_LOG = logging.getLogger("distributed.nanny")
+
+
 class QuietWorker(distributed.Worker):  # type: ignore[misc]
     """A worker without a web server."""
 
@@ -45,6 +48,7 @@ class PrivateCluster:
         self._folder: Path = new_folder("dask")
         common = {"host": HOST, "protocol": "tls://", "security": self.security}
         options = {**common, "nthreads": 1, "worker_class": QuietWorker, "local_directory": str(self._folder)}
+        START_LOG.disabled = True  # what fails is raised; Dask prints its tracebacks, besides
         try:
             with safe_children():
                 self.cluster = distributed.SpecCluster(
@@ -56,6 +60,7 @@ class PrivateCluster:
         except BaseException:
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
+        START_LOG.disabled = False
 
     def close(self) -> None:
         """End it and remove its folder."""

@@ -25,7 +25,7 @@ MIN_APPROACH = 0.25
 """Approach [m] that no motion of the vehicle explains and that shows a moving object: 8 sigma of 3 cm of noise."""
 TIME_TO_STAND = 1.5
 """A moving object is yielded to from this time [s] before it arrives: the longest stop from top speed, and a half."""
-NEARBY = 1.0
+NEARBY_RANGE = 1.0
 """Within this range [m] a moving object is yielded to wherever it moves: a step or two."""
 
 
@@ -119,7 +119,7 @@ def static_approach(before: SensorPose, after: SensorPose) -> float:
 
 def is_yielded_to(track: ObjectTrack) -> bool:
     """Return whether the vehicle has to stand for a moving object: one close by, or one that arrives soon."""
-    return track.approach > MIN_APPROACH and (track.range < NEARBY or track.range < -track.rate * TIME_TO_STAND)
+    return track.approach > MIN_APPROACH and (track.range < NEARBY_RANGE or track.range < -track.rate * TIME_TO_STAND)
 
 
 def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: float) -> float:

@@ -8,6 +8,7 @@ from enum import IntEnum
 
 from controller_fmu.common.chart import Row as TransitionRow
 from controller_fmu.common.chart import next_state
+from controller_fmu.common.phases import CommonPhase
 
 
 class ParkingState(IntEnum):
@@ -27,6 +28,23 @@ class ParkingState(IntEnum):
     PARKED = 8
     FAILED = 9
     TAKEOVER = 10
+
+
+class ParkingPhase(IntEnum):
+    """What the system is at; while it searches and plans it is in standby."""
+
+    STANDBY = CommonPhase.STANDBY
+    PRE_STEER = 1
+    """At standstill; the wheel turns to what the next segment begins with."""
+    PATH_TRACKING = 2
+    """Drives along the path, in either direction."""
+    STOP = 3
+    """Comes to a stop."""
+    STRAIGHTEN = 8
+    """At the goal; the wheel turns straight."""
+    PARKED = CommonPhase.PARKED
+    FAILED = CommonPhase.FAILED
+    TAKEOVER = CommonPhase.TAKEOVER
 
 
 class Strategy(IntEnum):
@@ -75,6 +93,8 @@ class Condition(IntEnum):
     """No slot is searched: the vehicle sets out at once."""
     RESUMED = 18
     """Switched on again at standstill near the slot that the vehicle was driven into."""
+    WANTS_OUT = 19
+    """Switched on at standstill to pull out of the slot."""
 
 
 def _row(source: ParkingState, condition: Condition, target: ParkingState) -> TransitionRow:
@@ -91,6 +111,7 @@ def _aborts(source: ParkingState) -> tuple[TransitionRow, TransitionRow, Transit
 
 TRANSITIONS: tuple[TransitionRow, ...] = (
     _row(ParkingState.STANDBY, Condition.GOAL_KNOWN, ParkingState.PLANNING),
+    _row(ParkingState.STANDBY, Condition.WANTS_OUT, ParkingState.CONFIRMING),
     _row(ParkingState.STANDBY, Condition.RESUMED, ParkingState.CONFIRMING),
     _row(ParkingState.STANDBY, Condition.SWITCHED_ON, ParkingState.SEARCHING),
     _row(ParkingState.SEARCHING, Condition.SWITCHED_OFF, ParkingState.STANDBY),

@@ -4,9 +4,9 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.interface import Reason
+from controller_fmu.parking.chart import ParkingPhase
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory

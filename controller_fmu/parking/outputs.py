@@ -1,11 +1,10 @@
 """Outputs of the parking system, from what it remembers."""
 
 from controller_fmu.common.driver_selection import MAX_OFFERS
-from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.state import ParkingMemory
@@ -57,6 +56,8 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
 def prompt_of(memory: ParkingMemory) -> int:
     """Return the prompt to the driver."""
     state = memory.state
+    if state == ParkingState.PARKED and memory.strategy == Strategy.PULL_OUT:
+        return Prompt.TAKE_OVER
     if state == ParkingState.PARKED or state == ParkingState.FAILED:
         return Prompt.STOP
     if state == ParkingState.CONFIRMING:

@@ -37,6 +37,7 @@ from controller_fmu.parking.planning.planner import (
 )
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.pull_out import free_box, pose_on_road, road_side, with_neighbours
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
@@ -210,7 +211,7 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:
     """Return how many manoeuvres are allowed: GB/T 41630 has one less for a perpendicular slot."""
-    if memory.strategy != Strategy.SLOT:
+    if memory.strategy == Strategy.POSE:
         return params.plan.max_manoeuvres
     return params.limit.manoeuvres - (1 if memory.search.slot.type == SlotType.PERPENDICULAR else 0)
 
@@ -222,7 +223,7 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     local_map = memory.perception.local_map
     landmarks = without_driven_over(local_map.landmarks, pose, outline)
     memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
-    if memory.strategy == Strategy.POSE:
+    if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
     slot = corrected_slot(memory.search, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
@@ -261,12 +262,28 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     echoes = KnownEchoes(perception.remembered, (EchoObstacle(),) * SENSORS)
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
+    if memory.strategy == Strategy.PULL_OUT:
+        return _with_plan(memory, local, memory.plan.way_out, inputs, params)
     goal = params.target
     if inputs.external_slot.kind != SlotKind.NONE:
         goal = external_pose(inputs.external_slot, outline, pose)
     if not is_usable_slot(inputs.external_slot):
         return memory._replace(reason=Reason.BAD_INPUT)
     return _with_plan(memory, with_known_map(local, params.map), goal, inputs, params)
+
+
+def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory of a vehicle that is to pull out, with its neighbours in the map as they are measured."""
+    pose = inputs.odometry
+    side = road_side(inputs.driver_selection.side)
+    local_map = memory.perception.local_map
+    box = free_box(memory.perception.cycle.readings, params.car)
+    landmarks = with_neighbours(local_map.landmarks, box, side, pose, params.car, params.mapping)
+    perception = memory.perception._replace(local_map=local_map._replace(landmarks=landmarks))
+    goal = pose_on_road(box, side, pose, vehicle_outline(params.car, params.plan.curvature_fraction))
+    plan = memory.plan._replace(way_out=goal)
+    search = SearchProgress(pose=pose, stand=pose)
+    return memory._replace(strategy=Strategy.PULL_OUT, perception=perception, plan=plan, search=search)
 
 
 def _with_plan(

@@ -5,8 +5,7 @@ from typing import Annotated, NamedTuple
 from controller_fmu.common.driver_selection import MAX_OFFERS, DriverSelection
 from controller_fmu.common.external_slot import ExternalSlot
 from controller_fmu.interface import Odometry, Reason
-from controller_fmu.parking.chart import ParkingState
-from controller_fmu.parking.phases import ParkingPhase
+from controller_fmu.parking.chart import ParkingPhase, ParkingState
 from controller_fmu.parking.slots.candidate import SlotType
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (

@@ -61,6 +61,8 @@ class PlanProgress(NamedTuple):
     """No path leads on from where the vehicle was on its way: it waits for a change of the map."""
     failed_at: int = 0
     """Since then [ns]."""
+    way_out: Pose = Pose()
+    """Where pulling out ends."""
     is_final: bool = False
     """No plan brings the vehicle nearer to its goal, and it stands in the slot."""
 

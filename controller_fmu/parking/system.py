@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.common.chart import bit
-from controller_fmu.common.driver_selection import MAX_OFFERS
+from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenTask
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
@@ -46,6 +46,7 @@ from controller_fmu.parking.path_planning import (
     is_acceptable,
     max_manoeuvres,
     slot_in_map,
+    with_way_out,
 )
 from controller_fmu.parking.perception import (
     chosen_number,
@@ -57,6 +58,7 @@ from controller_fmu.parking.perception import (
     search_slots,
 )
 from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.pull_out import is_clear_ahead
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.slots.goal import goal_pose
@@ -81,7 +83,8 @@ def parking_sample(
     """Return the memory one sample of ``dt_ns`` later."""
     state = memory.state
     is_off = state in (ParkingState.STANDBY, ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
-    perceives = not is_off or is_slot_kept(memory)
+    wants_out = params.search.active and inputs.driver_selection.task == ChosenTask.PULL_OUT
+    perceives = not is_off or is_slot_kept(memory) or (wants_out and state == ParkingState.STANDBY)
     if perceives and input_fault(inputs) == Reason.NONE:
         memory = perceive(memory, inputs, params, dt_ns)
         memory = forget_what_left(memory, inputs, params) if is_off else memory
@@ -175,17 +178,27 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     search = memory.search
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
     moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.stand.x, search.stand.y)
-    is_resumed = search.resumes and standing and inputs.apa_switch and is_near_slot(memory, inputs.odometry)
-    planned = memory.plan.is_found
     searches = params.search.active
-    is_another = not search.slot.is_external and chosen_number(search.offered, inputs.driver_selection) != search.shown
+    wants_out = searches and inputs.driver_selection.task == ChosenTask.PULL_OUT
+    is_out = memory.strategy == Strategy.PULL_OUT
+    is_resumed = (
+        not wants_out and search.resumes and standing and inputs.apa_switch and is_near_slot(memory, inputs.odometry)
+    )
+    planned = memory.plan.is_found
+    has_readings = memory.perception.local_map.begun
+    is_another = (
+        not is_out
+        and not search.slot.is_external
+        and chosen_number(search.offered, inputs.driver_selection) != search.shown
+    )
     return (
         bit(Condition.GOAL_KNOWN, not searches)
         | bit(Condition.RESUMED, is_resumed)
-        | bit(Condition.SWITCHED_ON, inputs.apa_switch and searches and not is_resumed)
+        | bit(Condition.WANTS_OUT, wants_out and standing and inputs.apa_switch and has_readings)
+        | bit(Condition.SWITCHED_ON, inputs.apa_switch and searches and not is_resumed and not wants_out)
         | bit(Condition.SWITCHED_OFF, searches and not inputs.apa_switch)
         | bit(Condition.TAKEN_OVER, is_taken_over(memory.clocks, inputs))
-        | bit(Condition.FAULT, memory.reason != Reason.NONE and memory.state != ParkingState.CONFIRMING)
+        | bit(Condition.FAULT, memory.reason != Reason.NONE and (is_out or memory.state != ParkingState.CONFIRMING))
         | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
         | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
         | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON or is_another)
@@ -205,18 +218,21 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     rolls_after = progress.upcoming.standstill.after if memory.state == ParkingState.STEERING else 0.0
     tolerance = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolls_after)
     blocked = memory.verdict.is_blocked
+    is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
+    is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
     stop = stopping_distance(abs(speed), params.drive.brake_delay, params.drive.brake_deceleration)
     lost = abs(progress.lateral_error) > params.monitor.corridor
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
     blocked_long = seconds(memory.clocks.blocked) > patience
+    halts = blocked or lost or is_out
     straightens = memory.state == ParkingState.STRAIGHTENING
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
-        | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or blocked or lost)
+        | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or halts)
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
-        | bit(Condition.AT_END, standing and is_at_end(progress))
+        | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)
         | bit(Condition.IN_PLACE, in_place)
         | bit(Condition.MISSED, straightens and straight and standing and not in_place)
@@ -225,6 +241,8 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
+    if memory.strategy == Strategy.PULL_OUT:
+        return True
     if memory.plan.is_final and is_acceptable(memory, inputs.odometry, params):
         return True
     goal = memory.plan.request.goal
@@ -246,7 +264,10 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.STANDBY and before != ParkingState.STANDBY:
         memory = memory._replace(search=memory.search._replace(resumes=is_slot_kept(memory)))
     if state == ParkingState.CONFIRMING and before != ParkingState.CONFIRMING:
-        memory = begin_plan(_with_slot_shown(memory, inputs.odometry))
+        memory = _with_slot_shown(memory, inputs.odometry)
+        if before == ParkingState.STANDBY and inputs.driver_selection.task == ChosenTask.PULL_OUT:
+            memory = with_way_out(memory, inputs, params)
+        memory = begin_plan(memory)
     if state == ParkingState.PLANNING and before == ParkingState.STANDBY:
         memory = memory._replace(strategy=Strategy.POSE)
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:

@@ -25,8 +25,6 @@ OTHERWISE = frozenset(
         "apa-parallel-deep",
         "apa-pedestrian",
         "apa-perpendicular-walls",
-        "apa-pull-out",
-        "apa-pull-out-right",
         "apa-resume",
         "apa-sensor-loss",
         "apa-slot-too-short",

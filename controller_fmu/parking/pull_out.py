@@ -1,0 +1,138 @@
+"""Out of a parallel slot: what the sensors measure at rest as landmarks, and a pose on the road beside the slot.
+
+A neighbour's bumper is measured at rest, its flank is not: it is taken to stand out of the row by ``MAX_STAND_OUT``
+more than the vehicle. Such landmarks are updated or contradicted on the way like all others.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.common.driver_selection import ChosenSide
+from controller_fmu.parking.geometry.frames import point_from_frame
+from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.map.facing_surface import BUMPER_SENSORS, is_pair
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType, free_index, offset_of, replace_landmark
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, reading_status
+from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH
+from modelkit.car import Car
+from modelkit.geometry import Point
+from modelkit.vocabulary import Pose
+
+MAX_STAND_OUT = 0.25
+"""Neighbours stand out of the row by up to this [m] more than the vehicle: two standard deviations of a row."""
+CLEAR_AHEAD = 4.0
+"""Free distance [m] ahead with which the vehicle is out of the slot, as for `apa`."""
+ROAD_CLEARANCE = 0.3
+"""Distance [m] of the vehicle on the road from the row."""
+
+
+class FreeBox(NamedTuple):
+    """What is free around a standing vehicle, in its frame [m]; ``NO_ECHO`` where nothing is measured."""
+
+    front: float
+    rear: float
+    left: float
+    right: float
+
+
+def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
+    """Return the nearest of what the sensors measure that look along or across the vehicle.
+
+    The others look sideways: their echoes come from that side of the cone which is nearer to a neighbour.
+    """
+    sensors = car.ultrasonic
+    far = CAR_LENGTH + sensors.max_range
+    front = far
+    rear = -far
+    left = far
+    right = -far
+    for number in range(SENSORS):
+        mount = sensors.mounts[number]
+        is_middle = number > 0 and is_pair(number) and is_pair(number - 1)
+        status = reading_status(readings[number], sensors)
+        if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
+            x = mount.x + readings[number] * math.cos(mount.yaw)
+            y = mount.y + readings[number] * math.sin(mount.yaw)
+            if number < BUMPER_SENSORS // 2 and is_middle:
+                front = min(front, x)
+            elif number < BUMPER_SENSORS and is_middle:
+                rear = max(rear, x)
+            elif number >= BUMPER_SENSORS and mount.y > 0.0:
+                left = min(left, y)
+            elif number >= BUMPER_SENSORS:
+                right = max(right, y)
+    return FreeBox(front, rear, left, right)
+
+
+def is_clear_ahead(readings: tuple[float, ...]) -> bool:
+    """Return whether all sensors of the front bumper measure so far that the driver can go on."""
+    nearest = CLEAR_AHEAD
+    for number in range(BUMPER_SENSORS // 2):
+        nearest = min(nearest, readings[number])
+    return nearest >= CLEAR_AHEAD
+
+
+def road_side(chosen: int) -> float:
+    """Return on which side the road is: 1 left, -1 right; if nobody chose, traffic keeps to the right."""
+    return -1.0 if chosen == ChosenSide.RIGHT else 1.0
+
+
+def with_neighbours(
+    landmarks: tuple[Landmark, ...], box: FreeBox, side: float, pose: Pose, car: Car, params: MappingParams
+) -> tuple[Landmark, ...]:
+    """Return the landmarks with the neighbours' bumpers and flanks and the kerb, as far as they are measured."""
+    road = side * (0.5 * car.width + MAX_STAND_OUT)
+    deep = road - side * CAR_WIDTH
+    far = CAR_LENGTH + car.ultrasonic.max_range
+    if box.front < far:
+        end = box.front + CAR_LENGTH
+        landmarks = _insert(landmarks, _segment(Point(box.front, deep), Point(box.front, road), pose, params))
+        landmarks = _insert(landmarks, _segment(Point(box.front, road), Point(end, road), pose, params))
+    if box.rear > -far:
+        end = box.rear - CAR_LENGTH
+        landmarks = _insert(landmarks, _segment(Point(box.rear, deep), Point(box.rear, road), pose, params))
+        landmarks = _insert(landmarks, _segment(Point(box.rear, road), Point(end, road), pose, params))
+    kerb = box.right if side > 0.0 else box.left
+    if abs(kerb) < far:
+        landmarks = _insert(landmarks, _segment(Point(box.rear, kerb), Point(box.front, kerb), pose, params))
+    return landmarks
+
+
+def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline) -> Pose:
+    """Return the pose beside the neighbour ahead, on the road on one side, of a vehicle that stands at ``pose``."""
+    ahead = min(box.front, outline.centre_ahead + outline.half_length) + CAR_LENGTH - outline.centre_ahead
+    point = point_from_frame(ahead, side * (2.0 * outline.half_width + MAX_STAND_OUT + ROAD_CLEARANCE), pose)
+    return Pose(point.x, point.y, pose.heading)
+
+
+def _segment(a: Point, b: Point, pose: Pose, params: MappingParams) -> Landmark:
+    """Return the segment between two points of the vehicle's frame, known to ``MAX_STAND_OUT`` [m]."""
+    p = point_from_frame(a.x, a.y, pose)
+    q = point_from_frame(b.x, b.y, pose)
+    half = 0.5 * math.sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y))
+    variance = 0.25 * MAX_STAND_OUT * MAX_STAND_OUT
+    found = Landmark(
+        type=LandmarkType.SEGMENT,
+        x=0.5 * (p.x + q.x),
+        y=0.5 * (p.y + q.y),
+        heading=math.atan2(q.y - p.y, q.x - p.x),
+        xx=variance,
+        yy=variance,
+        hh=variance / max(half * half, variance),
+        start=-half,
+        end=half,
+        start_variance=variance,
+        end_variance=variance,
+        start_known=True,
+        end_known=True,
+        confirmations=params.confirmations,
+    )
+    if offset_of(found, pose.x, pose.y) < 0.0:
+        return found._replace(heading=math.atan2(p.y - q.y, p.x - q.x))
+    return found
+
+
+def _insert(landmarks: tuple[Landmark, ...], new: Landmark) -> tuple[Landmark, ...]:
+    """Return the landmarks with a new one, in a free place or that of the least confirmed."""
+    return replace_landmark(landmarks, free_index(landmarks), new)

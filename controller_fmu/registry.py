@@ -126,7 +126,7 @@ else:
         "ControllerOutput",
         __name__,
         "To the vehicle, the driver, the log and the judge.",
-        (*(row.told for row in ROWS), RefusedOutput),
+        (*(row.reported for row in ROWS), RefusedOutput),
     )
     ControllerState = make_named_tuple(
         "ControllerState",

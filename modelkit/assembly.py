@@ -84,14 +84,14 @@ class CompositeModel(NamedTuple):
 
     def initialize(self, params: Any) -> tuple[Any, Any]:
         """Return (state, outputs) at time zero."""
-        memory, told = {LEFT: self.assembly.period_ns}, {}
+        memory, reported = {LEFT: self.assembly.period_ns}, {}
         for name, model in self.assembly.parts:
-            memory[name], told[name] = model.initialize(getattr(params, name))
+            memory[name], reported[name] = model.initialize(getattr(params, name))
             memory[name + INPUTS] = model.inputs()
             if is_integrated(model):
                 memory[name + BEHIND] = 0
-        self._pass_on(memory, told)
-        return self.state(**memory), self.outputs(**told)
+        self._pass_on(memory, reported)
+        return self.state(**memory), self.outputs(**reported)
 
     def step(self, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
         """Return (state, outputs) after a step, cut at the exchanges."""
@@ -100,14 +100,14 @@ class CompositeModel(NamedTuple):
     def step_with_store(self, store: Any, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
         """Return the same, where a part has a store."""
         memory: dict[str, Any] = state._asdict()
-        told: dict[str, Any] = {}
+        reported: dict[str, Any] = {}
         self._catch_up(memory, inputs, params)
         self._take(memory, inputs)
         while True:
             span_ns = min(dt_ns, memory[LEFT])
             for name, model in self.assembly.parts:
                 own, held, behind_ns = getattr(params, name), memory[name + INPUTS], memory.get(name + BEHIND, 0)
-                after, told[name] = model.stepper(store)(memory[name], held, own, behind_ns + span_ns)
+                after, reported[name] = model.stepper(store)(memory[name], held, own, behind_ns + span_ns)
                 if is_integrated(model) and span_ns < memory[LEFT]:
                     memory[name + BEHIND] = behind_ns + span_ns
                     continue
@@ -117,10 +117,10 @@ class CompositeModel(NamedTuple):
             memory[LEFT] -= span_ns
             dt_ns -= span_ns
             if memory[LEFT] == 0:
-                self._pass_on(memory, told)
+                self._pass_on(memory, reported)
                 memory[LEFT] = self.assembly.period_ns
             if dt_ns <= 0:
-                return self.state(**memory), self.outputs(**told)
+                return self.state(**memory), self.outputs(**reported)
 
     def _catch_up(self, memory: dict[str, Any], inputs: Any, params: Any) -> None:
         """Bring the memory of each part up to date of which an input of the whole changes."""
@@ -134,9 +134,9 @@ class CompositeModel(NamedTuple):
                 memory[name], _ = model.stepper(None)(memory[name], memory[name + INPUTS], own, behind_ns)
                 memory[name + BEHIND] = 0
 
-    def _pass_on(self, memory: dict[str, Any], told: Mapping[str, Any]) -> None:
+    def _pass_on(self, memory: dict[str, Any], reported: Mapping[str, Any]) -> None:
         """Write outputs to the inputs they feed."""
-        outputs = [flatten(told[name]) for name, _ in self.assembly.parts]
+        outputs = [flatten(reported[name]) for name, _ in self.assembly.parts]
         given = [flatten(memory[name + INPUTS]) for name, _ in self.assembly.parts]
         for wire in wires(self.assembly):
             given[wire.target][wire.input] = outputs[wire.source][wire.output]

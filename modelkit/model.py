@@ -43,7 +43,7 @@ class SampledSystem(NamedTuple, Generic[Own, Params, Input, Output]):
     params: type[Params]
     """What can be set of it: its variables, and no other, are those of a model of it alone."""
     inputs: type[Input]
-    told: type[Output]
+    reported: type[Output]
     """Its outputs."""
     start: Callable[[Params], Own]
     """``start(params) -> own``: its memory before the first sample."""
@@ -62,12 +62,12 @@ class SampledSystem(NamedTuple, Generic[Own, Params, Input, Output]):
     @property
     def own(self) -> tuple[str, ...]:
         """Its parameters, inputs and outputs: names, or groups that it has all of."""
-        return tuple(name for cls in (self.params, self.inputs, self.told) for name in groups_of(cls))
+        return tuple(name for cls in (self.params, self.inputs, self.reported) for name in groups_of(cls))
 
     @property
     def states(self) -> tuple[tuple[str, type[IntEnum]], ...]:
         """(output, states) of the modes among its outputs."""
-        found = ((item.name, item.signal.states) for item in variables(self.told))
+        found = ((item.name, item.signal.states) for item in variables(self.reported))
         return tuple((name, states) for name, states in found if states is not None)
 
 
@@ -259,18 +259,18 @@ def _with(state: State, changed: dict[str, Any]) -> State:
     return cast("State", whole._replace(**changed))
 
 
-def _complete(outputs: type[Output], told: Any) -> Output:
+def _complete(outputs: type[Output], reported: Any) -> Output:
     """Return the outputs of a system as those of the model, which has more."""
-    shape: Any = type(told)  # mypy does not take a type for hashable
+    shape: Any = type(reported)  # mypy does not take a type for hashable
     whole: Any = outputs
-    return cast("Output", told if shape is outputs else _completer(whole, shape)(told))
+    return cast("Output", reported if shape is outputs else _completer(whole, shape)(reported))
 
 
 @cache
-def _completer(outputs: Any, told: Any) -> Callable[[Any], Any]:
+def _completer(outputs: Any, reported: Any) -> Callable[[Any], Any]:
     """Return a fast function from a system's outputs to the model's."""
     whole = outputs()
-    fields = [f"t.{name}" if name in told._fields else f"w.{name}" for name in outputs._fields]
+    fields = [f"t.{name}" if name in reported._fields else f"w.{name}" for name in outputs._fields]
     made: Callable[[Any], Any] = eval(f"lambda t: C({', '.join(fields)})", {"C": outputs, "w": whole})
     return made
 

@@ -47,15 +47,20 @@ class ExternalSlot(NamedTuple):
     heading: Annotated[float, Signal("rad", "direction from the road into the slot")] = 0.0
 
 
-def depth_of(told: ExternalSlot) -> float:
+def depth_of(reported: ExternalSlot) -> float:
     """Return how deep [m] a slot is, ``UNKNOWN_DEPTH`` if that is not told."""
-    c = math.cos(told.heading)
-    s = math.sin(told.heading)
-    depth = 0.5 * ((told.dx - told.ax + told.cx - told.bx) * c + (told.dy - told.ay + told.cy - told.by) * s)
+    c = math.cos(reported.heading)
+    s = math.sin(reported.heading)
+    depth = 0.5 * (
+        (reported.dx - reported.ax + reported.cx - reported.bx) * c
+        + (reported.dy - reported.ay + reported.cy - reported.by) * s
+    )
     return depth if depth > MIN_SLOT_DEPTH else UNKNOWN_DEPTH
 
 
-def is_usable_slot(told: ExternalSlot) -> bool:
+def is_usable_slot(reported: ExternalSlot) -> bool:
     """Return whether no slot is told, or one whose numbers are finite."""
-    corners = told.ax + told.ay + told.bx + told.by + told.cx + told.cy + told.dx + told.dy
-    return told.kind == SlotKind.NONE or is_finite(corners + told.heading)
+    corners = (
+        reported.ax + reported.ay + reported.bx + reported.by + reported.cx + reported.cy + reported.dx + reported.dy
+    )
+    return reported.kind == SlotKind.NONE or is_finite(corners + reported.heading)

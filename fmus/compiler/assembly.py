@@ -44,9 +44,9 @@ class AssemblyEntries(Entries):
         """Yield what writes every output to the inputs it feeds, and begins the time to the next exchange."""
         for wire in wires(self.assembly):
             (source, sender), (target, receiver) = self.assembly.parts[wire.source], self.assembly.parts[wire.target]
-            told = member_path(source, variables(sender.outputs)[wire.output].name)
+            reported = member_path(source, variables(sender.outputs)[wire.output].name)
             given = member_path(f"{target}{INPUTS}", variables(receiver.inputs)[wire.input].name)
-            yield f"state->{given} = outputs->{told};"
+            yield f"state->{given} = outputs->{reported};"
         yield f"{self.left} = {self.assembly.period_ns};"
 
     def _initialize_all(self) -> Iterator[str]:

@@ -59,9 +59,9 @@ def _wholes(model: Model) -> dict[Any, Any]:
     if model.systems is None:
         return found
     for item in model.systems.systems:
-        found |= {item.params: model.params, item.inputs: model.inputs, item.told: model.outputs}
-    told = typing.get_type_hints(model.systems.refused).get("return")
-    return found | ({} if told is None else {told: model.outputs})
+        found |= {item.params: model.params, item.inputs: model.inputs, item.reported: model.outputs}
+    reported = typing.get_type_hints(model.systems.refused).get("return")
+    return found | ({} if reported is None else {reported: model.outputs})
 
 
 def _translate(model: Model, interfaces: list[Any], live: Slice | None) -> Translation:

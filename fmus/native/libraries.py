@@ -94,12 +94,12 @@ def in_c(model: Model, steps: Iterable[int]) -> Iterator[list[float]]:
     library, outputs = load_model(model), variables(model.outputs)
     memory = (ctypes.c_int64 * (memory_size(library) // 8 + 1))()
     params, inputs = (_numbers(flatten(value)) for value in (model.first_params(), model.inputs()))
-    told = _numbers([0.0] * len(outputs))
-    library.model_start(memory, params, told)
-    yield list(told)
+    reported = _numbers([0.0] * len(outputs))
+    library.model_start(memory, params, reported)
+    yield list(reported)
     for dt_ns in steps:
-        library.model_step(memory, inputs, told, dt_ns)
-        yield list(told)
+        library.model_step(memory, inputs, reported, dt_ns)
+        yield list(reported)
 
 
 def _numbers(values: Sequence[float]) -> Any:

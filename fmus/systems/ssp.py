@@ -71,10 +71,10 @@ def _structure(system: FmuSystem, with_outputs: bool) -> Element:
     names = {"name": system.identifier, "version": "1.0"}
     root = Element(_tag("ssd:SystemStructureDescription"), names | made)
     node = _add(root, "ssd:System", name=system.identifier, description=system.title)
-    told = list(system.outputs()) if with_outputs else []
-    if told:
+    reported = list(system.outputs()) if with_outputs else []
+    if reported:
         ports = _add(node, "ssd:Connectors")
-        for _, variable, name in told:
+        for _, variable, name in reported:
             _connector(ports, variable, "output", name)
     elements = _add(node, "ssd:Elements")
     connected = {(receiver.name, name) for _, receiver, name in system.connections()}
@@ -84,7 +84,7 @@ def _structure(system: FmuSystem, with_outputs: bool) -> Element:
     for sender, receiver, name in system.connections():
         ends = {"endElement": receiver.name, "endConnector": name}
         _add(connections, "ssd:Connection", startElement=sender.name, startConnector=name, **ends)
-    for part, variable, name in told:
+    for part, variable, name in reported:
         start = {"startElement": part.name, "startConnector": variable.name}
         _add(connections, "ssd:Connection", **start, endConnector=name)
     _master_of_omsimulator(node, system.step)

@@ -216,9 +216,9 @@ def test_no_parameter_in_range_raises(data: st.DataObject) -> None:
 def test_the_path_told_leads_to_the_target_in_reverse(mirror: float) -> None:
     params = with_values(ControllerParams, {"target.x": -9.0, "target.y": mirror * -3.056, "system": System.NTBPTCWPT})
     state, _ = initialize(params)
-    _, told = step(state, ControllerInput(), params, 10_000_000)
-    x, y, heading = told.path.start
-    for segment in told.path.segments:
+    _, reported = step(state, ControllerInput(), params, 10_000_000)
+    x, y, heading = reported.path.start
+    for segment in reported.path.segments:
         turned = heading - segment.curvature * segment.length
         chord = segment.length
         if segment.curvature != 0.0:
@@ -227,4 +227,4 @@ def test_the_path_told_leads_to_the_target_in_reverse(mirror: float) -> None:
         y -= chord * math.sin(0.5 * (heading + turned))
         heading = turned
     assert (x, y, heading) == pytest.approx((-9.0, mirror * -3.056, 0.0), abs=1e-6)
-    assert told.path.segments[1].length > 0.5
+    assert reported.path.segments[1].length > 0.5

@@ -237,11 +237,11 @@ def test_the_chart_is_that_of_figures_9_and_11() -> None:
 
 
 def test_prompts_are_the_paper_s() -> None:
-    told = {phase.name: PROMPT_OF_PHASE[phase] for phase in GuoPhase}
+    reported = {phase.name: PROMPT_OF_PHASE[phase] for phase in GuoPhase}
     reverse = dict.fromkeys(("PATH_TRACKING", "TO_Q1", "TO_Q3"), Prompt.REVERSE)
     stop = dict.fromkeys(("PRE_STEER", "STOP", "STRAIGHTEN", "PARKED", "FAILED"), Prompt.STOP)
     forward = dict.fromkeys(("TO_Q2", "TO_Q4"), Prompt.FORWARD)
-    assert told == reverse | stop | forward | {"STANDBY": Prompt.NONE, "TAKEOVER": Prompt.NONE}
+    assert reported == reverse | stop | forward | {"STANDBY": Prompt.NONE, "TAKEOVER": Prompt.NONE}
     prompting = GuoParams().prompting
     assert (prompting.reaction, prompting.deceleration, prompting.point_speed) == (0.3, 2.0, 0.5)
     assert (prompting.creep_speed, prompting.speed_limit, prompting.jump_deviation) == (0.2, 2.5, 0.025)

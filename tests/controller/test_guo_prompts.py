@@ -65,11 +65,11 @@ def test_point_tracking_is_slow() -> None:
 def test_a_direction_is_told_whenever_the_car_stands_and_shall_go(start: tuple[float, float], reaction: float) -> None:
     vehicle: dict[str, Any] = {"start.x": start[0], "start.y": start[1], "driver.reaction_delay": reaction}
     run = drive(OBEYING | vehicle, {})
-    told = {1: Prompt.FORWARD, -1: Prompt.REVERSE}
+    reported = {1: Prompt.FORWARD, -1: Prompt.REVERSE}
     for seen, outputs in zip(run.vehicle, run.controller[1:], strict=False):
         direction = DIRECTION_OF_PHASE[outputs.phase]
         if seen.speed == 0.0 and direction != 0:
-            assert outputs.prompt == told[direction]
+            assert outputs.prompt == reported[direction]
     assert Reason(run.controller[-1].reason) == Reason.NONE
     assert run.phases[-1] == GuoPhase.PARKED
 

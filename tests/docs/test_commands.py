@@ -179,7 +179,7 @@ def test_commands_do_what_is_printed(page: Path, shelf: Path, tmp_path: Path, mo
         if block.language == "sh":
             printed = "\n".join(run(line) for line in commands(block))
         elif block.language == "text" and printed:
-            told(block.text, printed)
+            reported(block.text, printed)
         elif block.language == "python" and not block.file and has_packages(block.text):
             with redirect_stdout(io.StringIO()) as out:
                 exec(compile(block.text, page.name, "exec"), names)
@@ -222,7 +222,7 @@ def run(line: str) -> str:
     return done.stdout
 
 
-def told(block: str, printed: str) -> None:
+def reported(block: str, printed: str) -> None:
     """Assert that every line of ``block`` was printed, but for dots that stand for more."""
     have = [" ".join(line.split()) for line in printed.splitlines()]
     for line in block.splitlines():

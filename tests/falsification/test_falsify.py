@@ -85,12 +85,14 @@ def test_a_find_runs_again_to_the_same_bits(study: Any, tmp_path: Path, capsys: 
     noted = json.loads((folder / NOTES).read_text())
     scenario = load_scenario(str(folder / f"{again[0].name}.yaml"))
     summary = summarize(run_scenario(scenario).recording, scenario, 1.0)
-    told = {
+    reported = {
         "duration": summary.duration,
         **{f"final.{key}": value for key, value in summary.final.model_dump().items()},
     }
     bits = noted[again[0].name]["bits"]
-    assert {key: told[key].hex() for key in BITS if key in told} == {key: bits[key] for key in BITS if key in told}
+    assert {key: reported[key].hex() for key in BITS if key in reported} == {
+        key: bits[key] for key in BITS if key in reported
+    }
     assert summary.outcome == "not_parked"
     assert main(["falsify", "--regression", str(folder)]) == 1
     mended = folder / f"{again[0].name}.yaml"

@@ -93,8 +93,8 @@ class Library3:
         return {v.name: self.get(component, v.name) for v in self.known.values() if v.causality in ("output", "local")}
 
     def step(self, component: Any, time: Any, size: Any = 0.01) -> Any:
-        self.told = (c_bool(True), c_bool(True), c_bool(True), c_double(-1.0))
-        pointers = (byref(item) for item in self.told)
+        self.reported = (c_bool(True), c_bool(True), c_bool(True), c_double(-1.0))
+        pointers = (byref(item) for item in self.reported)
         return self.call("DoStep", component, c_double(time), c_double(size), c_bool(True), *pointers)
 
     def free(self, component: Any) -> None:

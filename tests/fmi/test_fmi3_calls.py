@@ -256,9 +256,9 @@ def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy: Any, time: Any, s
     component = toy.initialized()
     assert toy.step(component, time, size) == ERROR
     assert words in toy.messages[-1][2]
-    assert [item.value for item in toy.told] == [False, False, False, 0.0]
+    assert [item.value for item in toy.reported] == [False, False, False, 0.0]
     assert toy.step(component, 0.0) == OK
-    assert [item.value for item in toy.told] == [False, False, False, 0.01]
+    assert [item.value for item in toy.reported] == [False, False, False, 0.01]
     assert toy.step(component, 0.01, 1e-12) == OK
     assert toy.get(component, "count") == [1]
     toy.free(component)
@@ -271,7 +271,7 @@ def test_a_step_beyond_the_stop_time_is_an_error(toy: Any) -> None:
     assert toy.step(component, 7.5) == OK
     assert toy.step(component, 7.51, 0.02) == ERROR
     assert "beyond the stop time" in toy.messages[-1][2]
-    assert toy.told[-1].value == 7.51
+    assert toy.reported[-1].value == 7.51
     assert toy.step(component, 7.51) == OK
     assert toy.step(component, 7.52, 2e-6) == ERROR
     assert toy.get(component, "count") == [2]

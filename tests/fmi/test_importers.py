@@ -46,8 +46,8 @@ def test_a_block_of_the_controller_has_the_ports_it_needs() -> None:
     inputs = {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"}
     assert {name for name in inputs if not name.startswith("manual.")} < set(outputs)
     wanted = {item.name for item in fmi_variables(CONTROLLER) if item.causality == "input"}
-    told = {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
-    assert {name for name in wanted if not name.startswith(FROM_OUTSIDE)} < told
+    reported = {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
+    assert {name for name in wanted if not name.startswith(FROM_OUTSIDE)} < reported
 
 
 def test_what_is_calculated_is_output_or_local_and_nothing_is_lost() -> None:

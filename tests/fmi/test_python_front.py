@@ -80,10 +80,14 @@ def expected() -> Any:
     return outputs.oscillators[0].position
 
 
-def child(**told: Any) -> Any:
+def child(**reported: Any) -> Any:
     """Return what a process found that called the FMU in ``folder``; it must have ended in peace."""
     environment = {**os.environ, "MALLOC_PERTURB_": "165", "PYTHONPATH": os.pathsep.join([str(HERE), *sys.path])}
-    command = [sys.executable, str(HERE / "python_child.py"), json.dumps({**told, "folder": str(told["folder"])})]
+    command = [
+        sys.executable,
+        str(HERE / "python_child.py"),
+        json.dumps({**reported, "folder": str(reported["folder"])}),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False, timeout=60)
     assert done.returncode == 0, (done.returncode, done.stderr)
     return json.loads(done.stdout)
@@ -114,8 +118,8 @@ def test_any_form_of_uri(unpacked: Any, reference: Any, expected: Any, tmp_path:
 
 def test_no_uri_no_logger_no_functions(unpacked: Any, reference: Any, expected: Any) -> None:
     for less in ({"uri": None}, {"logger": False}, {"functions": False}):
-        told = {"folder": unpacked, "uri": f"file://{unpacked}/resources", "reference": reference, **less}
-        check(child(**told), expected)
+        reported = {"folder": unpacked, "uri": f"file://{unpacked}/resources", "reference": reference, **less}
+        check(child(**reported), expected)
 
 
 def test_an_instance_that_is_never_freed_does_no_harm_at_the_end(unpacked: Any, reference: Any, expected: Any) -> None:

@@ -31,9 +31,9 @@ def test_a_wheel_names_what_it_requires_and_what_it_carries(tmp_path: Path) -> N
     assert "nosuch" not in known
     assert "no2" not in known
     references = {bill["metadata"]["component"]["bom-ref"], *(item["bom-ref"] for item in bill["components"])}
-    told = {item["ref"]: item["dependsOn"] for item in bill["dependencies"]}
-    assert {one for on in told.values() for one in on} < references
-    assert known["numpy"]["bom-ref"] in told[known["fmpy"]["bom-ref"]]
+    reported = {item["ref"]: item["dependsOn"] for item in bill["dependencies"]}
+    assert {one for on in reported.values() for one in on} < references
+    assert known["numpy"]["bom-ref"] in reported[known["fmpy"]["bom-ref"]]
 
 
 def test_an_fmu_lists_its_files_with_their_hashes(native_fmus: Any, tmp_path: Path, capsys: Any) -> None:

@@ -104,19 +104,19 @@ def read_and_told(system: Any) -> Any:
     told_by: set[str] = set()
     car = with_values(VEHICLE.params, dict(scenario.vehicle))
     params: Any = Watched(with_values(MODEL.params, dict(scenario.controller)), "", read)
-    vehicle, told = VEHICLE.initialize(car)
+    vehicle, reported = VEHICLE.initialize(car)
     controller, asked = MODEL.initialize(params)
     first = flatten(MODEL.outputs())
     names = [item.name for item in variables(MODEL.outputs)]
     for _ in range(round(stop * 100)):
         to_vehicle = TO_VEHICLE(asked)
-        to_controller: Any = Watched(TO_CONTROLLER(told), "", heard)
-        vehicle, told = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
+        to_controller: Any = Watched(TO_CONTROLLER(reported), "", heard)
+        vehicle, reported = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
         controller, asked = MODEL.stepper(None)(controller, to_controller, params, STEP_NS)
         told_by |= {
             name for name, now, default in zip(names, flatten(unwrapped(asked)), first, strict=True) if now != default
         }
-        if is_over(asked.phase) and told.speed == 0.0:
+        if is_over(asked.phase) and reported.speed == 0.0:
             break
     return read, heard, told_by
 
@@ -133,10 +133,12 @@ def test_it_shows_every_parameter_that_the_system_reads(system: Any) -> None:
 
 @each
 def test_what_it_shows_beside_what_all_have_is_read(system: Any) -> None:
-    read, heard, told = read_and_told(system)
+    read, heard, reported = read_and_told(system)
     all_have = set.intersection(*(set(item.own) for item in SYSTEMS.systems))
     own = set(next(item.own for item in SYSTEMS.systems if system in item.values)) - all_have
-    used = read | heard | told | ({"threshold.standstill"} if system == System.PREVIEW else set())  # at the road's end
+    used = (
+        read | heard | reported | ({"threshold.standstill"} if system == System.PREVIEW else set())
+    )  # at the road's end
     groups = [
         group for group in own if not any(name == group or name.startswith((f"{group}.", f"{group}[")) for name in used)
     ]
@@ -147,16 +149,16 @@ def test_what_it_shows_beside_what_all_have_is_read(system: Any) -> None:
 def test_it_has_the_inputs_that_the_system_reads(system: Any) -> None:
     _, heard, _ = read_and_told(system)
     inputs = shown(SYSTEM_MODELS[system], MODEL.inputs)
-    told = {
+    reported = {
         name for name in inputs if name.startswith("external_slot.") and "external_slot.kind" in heard
     }  # the kind says that it is
-    assert inputs == heard | told
+    assert inputs == heard | reported
 
 
 @each
 def test_it_shows_every_output_that_the_system_changes(system: Any) -> None:
-    _, _, told = read_and_told(system)
-    assert told <= shown(SYSTEM_MODELS[system], MODEL.outputs)
+    _, _, reported = read_and_told(system)
+    assert reported <= shown(SYSTEM_MODELS[system], MODEL.outputs)
 
 
 @each
@@ -239,11 +241,11 @@ def twin(path: Any, system: Any) -> None:
     make, names = constructor(MODEL.inputs), [item.name for item in variables(MODEL.outputs)]
     state, outputs = MODEL.initialize(params)
     with Host(path) as host:
-        told = [item.name for item in fmi_variables(model) if item.is_exposed and item.initial == "calculated"]
+        reported = [item.name for item in fmi_variables(model) if item.is_exposed and item.initial == "calculated"]
         host.initialize(**{"car.steering.ratio": 17.0})
         for number, values in enumerate(inputs):
             expected = dict(zip(names, flatten(outputs), strict=True))
-            assert bits(host.outputs()) == bits([expected[name] for name in told])
+            assert bits(host.outputs()) == bits([expected[name] for name in reported])
             state, outputs = MODEL.stepper(None)(state, make(list((start | values).values())), params, STEP_NS)
             host.set(values)
             assert host.step(number * 0.01, 0.01) == OK

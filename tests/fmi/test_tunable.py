@@ -58,28 +58,28 @@ def constants(scenario: Any) -> Any:
 def underway(name: Any) -> Any:
     """Return parameters, states and inputs of a scenario three seconds after the car has begun its path."""
     params = constants(load_scenario(name, []))
-    vehicle, told = VEHICLE.initialize(params["vehicle"])
+    vehicle, reported = VEHICLE.initialize(params["vehicle"])
     controller, asked = CONTROLLER.initialize(params["controller"])
     left = 300
     while left:
-        to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(told)
-        vehicle, told = step_vehicle(vehicle, to_vehicle, params["vehicle"], STEP_NS)
+        to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(reported)
+        vehicle, reported = step_vehicle(vehicle, to_vehicle, params["vehicle"], STEP_NS)
         controller, asked = step_controller(controller, to_controller, params["controller"], STEP_NS)
         assert asked.phase != GuoPhase.FAILED
         left -= asked.phase in (GuoPhase.PATH_TRACKING, GuoPhase.TO_Q2, GuoPhase.TO_Q1) or asked.prompt == 2
-    return params, {"vehicle": vehicle, "controller": controller}, (told, asked)
+    return params, {"vehicle": vehicle, "controller": controller}, (reported, asked)
 
 
 def drive(name: Any, changed: Any, steps: Any) -> Any:
     """Return all outputs of ``steps`` further steps of both, with other parameters."""
-    _, states, (told, asked) = underway(name)
+    _, states, (reported, asked) = underway(name)
     vehicle, controller = states["vehicle"], states["controller"]
     rows = []
     for _ in range(steps):
-        to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(told)
-        vehicle, told = step_vehicle(vehicle, to_vehicle, changed["vehicle"], STEP_NS)
+        to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(reported)
+        vehicle, reported = step_vehicle(vehicle, to_vehicle, changed["vehicle"], STEP_NS)
         controller, asked = step_controller(controller, to_controller, changed["controller"], STEP_NS)
-        rows.append(flatten(told) + flatten(asked))
+        rows.append(flatten(reported) + flatten(asked))
     return rows
 
 
@@ -140,8 +140,8 @@ def others(item: Any) -> Any:
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_no_tunable_at_an_end_of_its_range_harms_a_run(name: Any) -> None:
-    params, states, (told, asked) = underway(name)
-    given = {"vehicle": TO_VEHICLE(asked), "controller": TO_CONTROLLER(told)}
+    params, states, (reported, asked) = underway(name)
+    given = {"vehicle": TO_VEHICLE(asked), "controller": TO_CONTROLLER(reported)}
     for key, model in MODELS.items():
         for item in tunables(model):
             for value in others(item):

@@ -123,9 +123,9 @@ def _mixed(out: Path) -> str:
     recording = read_log(out / "run.mcap")
     if (out / "summary.json").is_file():
         summary = json.loads((out / "summary.json").read_text())
-        told, true = summary["overrides"], recording.info["scenario"]["overrides"]
-        if told != true or abs(summary["duration"] - recording.t[-1]) > 1e-9:
-            return f"the summary of {told} lies beside the log of {true}"
+        reported, true = summary["overrides"], recording.info["scenario"]["overrides"]
+        if reported != true or abs(summary["duration"] - recording.t[-1]) > 1e-9:
+            return f"the summary of {reported} lies beside the log of {true}"
     elif (out / "report.html").exists() or (out / "overview.png").exists():
         return "a page without a summary"
     return ""

@@ -44,7 +44,7 @@ def retold(data: bytes, key: str, text: str) -> bytes:
         body = bytes(piece.body)
         if piece.opcode == METADATA:
             record = parse_record(Metadata, piece)
-            kept = {name: told for name, told in record.metadata.items() if name != "checksum"}
+            kept = {name: reported for name, reported in record.metadata.items() if name != "checksum"}
             body = _body(Metadata(name=record.name, metadata={**kept, key: text} if record.name == "apa" else kept))
         if piece.opcode == DATA_END:
             break

@@ -19,7 +19,7 @@ from orchestrator.studies.sweep.study.read_study import bind
 from orchestrator.studies.sweep.study.study_file import StudyFile
 from orchestrator.studies.sweep.sweep import Options, sweep
 from orchestrator.studies.sweep.table import Table
-from tests.golden.test_golden import kept, told
+from tests.golden.test_golden import kept, reported
 from vehicle_fmu.interface import VehicleParams
 
 MAX_POSITION_CHANGE = 0.05
@@ -72,7 +72,7 @@ def recorded_ending(record: dict[str, Any]) -> Ending:
 def ending_with(name: str, *changes: str) -> Ending:
     scenario = load_scenario(name, list(changes))
     ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native")
-    return recorded_ending(told(summarize(ran.recording, scenario, ran.wall_time)))
+    return recorded_ending(reported(summarize(ran.recording, scenario, ran.wall_time)))
 
 
 def test_an_ending_differs_by_each_of_its_parts() -> None:

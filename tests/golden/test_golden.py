@@ -32,10 +32,10 @@ def kept() -> dict[str, Any]:
 def driven(name: str) -> dict[str, Any]:
     scenario = load_scenario(name, [])
     ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native")
-    return told(summarize(ran.recording, scenario, ran.wall_time))
+    return reported(summarize(ran.recording, scenario, ran.wall_time))
 
 
-def told(summary: Summary) -> dict[str, Any]:
+def reported(summary: Summary) -> dict[str, Any]:
     final = summary.final
     return {
         "outcome": summary.outcome,

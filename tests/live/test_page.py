@@ -389,9 +389,9 @@ def test_the_address_holds_scenario_and_changes(page: Any, file: Any, show: Any)
     again.evaluate("() => { location.hash = '#s=none&vehicle.steering.lag=9&car.nothing=1&x=%E0%A4%A'; }")
     again.wait_for_selector("#notice:not([hidden])")
     assert again.input_value("#scenario") == "guo2015-case4"
-    told = again.text_content("#notice")
+    reported = again.text_content("#notice")
     for words in ("no scenario none", "x=%E0%A4%A", "out of range: vehicle.steering.lag", "no parameter car.nothing"):
-        assert words in told
+        assert words in reported
 
 
 def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page: Any) -> None:

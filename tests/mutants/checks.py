@@ -62,13 +62,13 @@ def record(system: str) -> str:
 
     from orchestrator.simulation.cosim.fmu_files import fmu_files
     from orchestrator.studies.papers.drive import drive
-    from tests.golden.test_golden import alike, told
+    from tests.golden.test_golden import alike, reported
 
     kept = yaml.safe_load(Path("tests/golden/scenarios.yaml").read_text(encoding="utf-8"))
 
     def differs(name: str, kind: str) -> bool:
         files = fmu_files("native") if kind == "native" else None
-        return not alike(told(drive(name, files, kind).summary), kept[name])
+        return not alike(reported(drive(name, files, kind).summary), kept[name])
 
     asked = [(name, "none") for name in QUICK.get(system, ())]
     asked += [(name, _kind(system)) for name in scenarios_of(system)]

@@ -98,9 +98,9 @@ def test_several_at_a_time_give_the_same_verdicts_in_the_same_order(tmp_path: Pa
         assert main(words) == 2  # one cannot be loaded
         root: Any = ElementTree.parse(out / "junit.xml").getroot()
         verdicts.append([(suite.get("name"), [case.get("message") for case in suite.iter("error")]) for suite in root])
-        told = {item.get("name"): item.get("value") for item in root[1].iter("property")}
-        assert told["bad"].startswith(f"{tmp_path / 'good.fmu'}, SHA-256 ")
-        assert told["vehicle"].startswith(f"{ROOT}, SHA-256 ")
+        reported = {item.get("name"): item.get("value") for item in root[1].iter("property")}
+        assert reported["bad"].startswith(f"{tmp_path / 'good.fmu'}, SHA-256 ")
+        assert reported["vehicle"].startswith(f"{ROOT}, SHA-256 ")
     assert verdicts[0] == verdicts[1]
     assert [name for name, _ in verdicts[0]] == names
 

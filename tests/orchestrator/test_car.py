@@ -24,7 +24,7 @@ def write(folder: Path, text: str, name: str = "mine.yaml") -> str:
     return str(folder / name)
 
 
-def told(scenario: Scenario, owner: str) -> dict[str, Any]:
+def reported(scenario: Scenario, owner: str) -> dict[str, Any]:
     return {name: value for name, value in getattr(scenario, owner).items() if name.startswith("car.")}
 
 
@@ -32,8 +32,8 @@ def told(scenario: Scenario, owner: str) -> dict[str, Any]:
 def test_both_models_are_told_the_same_car_and_the_file_says_all_of_its_geometry(car: str) -> None:
     scenario = load_scenario("apa-parallel", [f"car={car}"])
     assert scenario.car == car
-    assert told(scenario, "vehicle") == told(scenario, "controller")
-    unsaid = {item.name for item in variables(Car)} - {name[4:] for name in told(scenario, "vehicle")}
+    assert reported(scenario, "vehicle") == reported(scenario, "controller")
+    unsaid = {item.name for item in variables(Car)} - {name[4:] for name in reported(scenario, "vehicle")}
     assert not {name for name in unsaid if name.startswith(("wheelbase", "width", "front", "rear", "steering"))}
     assert not {name for name in unsaid if "mounts" in name}
 

@@ -99,9 +99,9 @@ def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys:
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "a")]) == 1
     capsys.readouterr()
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "b"), "--set", "contact_allowed=true"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert "in contact, which the scenario allows (contact_allowed)" in told
-    assert "allowed: contact_allowed of the scenario" in told
+    reported = " ".join(capsys.readouterr().out.split())
+    assert "in contact, which the scenario allows (contact_allowed)" in reported
+    assert "allowed: contact_allowed of the scenario" in reported
 
 
 def test_check_test_and_judge_miss_it(tmp_path: Path, capsys: Any) -> None:

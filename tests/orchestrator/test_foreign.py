@@ -153,7 +153,7 @@ def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, caps
     page = (out / "index.html").read_text(encoding="utf-8")
     suite = ElementTree.parse(out / "junit.xml").getroot()[0]
     assert suite.get("timestamp") == about["when"]
-    told: Any = {item.get("name"): item.get("value") for item in suite.iter("property")}
-    assert {key: told[key] for key in about} == about
-    assert told["left out"].startswith("controller.system, ")
+    reported: Any = {item.get("name"): item.get("value") for item in suite.iter("property")}
+    assert {key: reported[key] for key in about} == about
+    assert reported["left out"].startswith("controller.system, ")
     assert all(html.escape(text) in page for text in about.values())

@@ -55,8 +55,8 @@ def test_the_card_of_a_test_is_turned_to_the_true_target(ran: tuple[SimulationRe
     recording = ran[0].recording
     turned = TOLD.model_copy(update={"target": Target(x=TRUE[0], y=TRUE[1], heading=0.5)})
     assert picture(recording, TOLD) != picture(recording, turned)
-    told = TOLD.model_copy(update={"controller": {**TOLD.controller, "target.heading": 0.5}})
-    assert picture(recording, TOLD) == picture(recording, told)
+    reported = TOLD.model_copy(update={"controller": {**TOLD.controller, "target.heading": 0.5}})
+    assert picture(recording, TOLD) == picture(recording, reported)
 
 
 def test_the_log_carries_what_is_true(ran: tuple[SimulationResult, Path]) -> None:

@@ -57,6 +57,6 @@ def test_types_fit(name: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize("wrong", ["plots.hoover(1);", "plots.zoom(1, 2);", "moved(3, 1, 2);"])
 def test_a_wrong_name_or_type_would_be_found(wrong: str, tmp_path: Path) -> None:
     bad = f"function bad(plots = new Plots({{}}, $('x'), bad, bad)) {{ {wrong} }}\nbad();"
-    told = checked(tmp_path, f"{SCRIPTS['replay']()}\n{bad}")
-    assert "error TS" in told
-    assert told.count("error TS") == 1
+    reported = checked(tmp_path, f"{SCRIPTS['replay']()}\n{bad}")
+    assert "error TS" in reported
+    assert reported.count("error TS") == 1

@@ -55,10 +55,10 @@ def test_who_is_early_waits_and_who_is_late_is_counted() -> None:
         pace.on_communication_point(step * 10_000_000)
         clock.now += work
     assert clock.slept == pytest.approx([0.006, 0.008])
-    told = pace.lateness_statistics()
-    assert (told["exchanges"], told["late"]) == (5, 2)
-    assert told["largest"] == pytest.approx(0.015)
-    assert told["at_end"] == pytest.approx(0.005)
+    reported = pace.lateness_statistics()
+    assert (reported["exchanges"], reported["late"]) == (5, 2)
+    assert reported["largest"] == pytest.approx(0.015)
+    assert reported["at_end"] == pytest.approx(0.005)
 
 
 def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was() -> None:

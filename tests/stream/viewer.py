@@ -29,9 +29,9 @@ class Viewer:
         """Take the next frame."""
         frame = self.socket.recv(timeout=120)
         if isinstance(frame, str):
-            told = json.loads(frame)
-            self.said.append(told)
-            for item in told.get("channels", []) if told["op"] == "advertise" else []:
+            reported = json.loads(frame)
+            self.said.append(reported)
+            for item in reported.get("channels", []) if reported["op"] == "advertise" else []:
                 self.channels[item["id"]] = item
         elif frame[0] == MESSAGE:
             subscription, t_ns = struct.unpack_from("<IQ", frame, 1)

@@ -168,14 +168,14 @@ def test_no_bit_of_a_table_can_be_changed_and_believed(whole: Any, tmp_path: Pat
         return str((table.about, notes, [table.column(name).tolist() for name in table.names()]))
 
     data, odd, draw = whole.read_bytes(), tmp_path / "odd.parquet", random.Random(5)
-    told = content(whole)
+    reported = content(whole)
     described = int.from_bytes(data[-8:-4], "little") + 8
     refused = 0
     for number in range(150):
         at = draw.randrange(len(data) - described if number % 2 else 0, len(data))
         odd.write_bytes(data[:at] + bytes([data[at] ^ 1 << draw.randrange(8)]) + data[at + 1 :])
         try:
-            assert content(odd) == told, at
+            assert content(odd) == reported, at
         except BadInput:
             refused += 1
     assert refused > 50
@@ -195,9 +195,9 @@ def test_what_is_no_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 def test_set_and_json(study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["sweep", str(study), "--out", str(tmp_path), "--no-page", "--set", "vehicle.start.x=1 cm", "--json"]
     assert main(arguments) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["count"], told["made"], told["table"]) == (COUNT, COUNT, str(tmp_path / "trial.parquet"))
-    assert Table(Path(told["table"])).job.scenario["vehicle"]["start.x"] == 0.01
+    reported = json.loads(capsys.readouterr().out)
+    assert (reported["count"], reported["made"], reported["table"]) == (COUNT, COUNT, str(tmp_path / "trial.parquet"))
+    assert Table(Path(reported["table"])).job.scenario["vehicle"]["start.x"] == 0.01
     assert main(["sweep", str(study), "--out", str(tmp_path), "--set", "nothing"]) == 2
 
 
@@ -206,8 +206,8 @@ def without(column: str) -> Callable[[Any, dict[str, Any]], Any]:
 
 
 def about(change: Callable[[dict[str, Any]], object]) -> Callable[[Any, dict[str, Any]], Any]:
-    def changed(found: Any, told: dict[str, Any]) -> Any:
-        change(told)
+    def changed(found: Any, reported: dict[str, Any]) -> Any:
+        change(reported)
         return found
 
     return changed
@@ -217,11 +217,11 @@ FORGED = {
     "no final pose": without("final.x"),
     "no outcome": without("outcome"),
     "no seed": without("run_seed"),
-    "key of no scenario": about(lambda told: told["job"]["scenario"].update({"start.y": 1.0})),
-    "scenario of numbers": about(lambda told: told["job"].update(scenario=5)),
-    "study without a name": about(lambda told: told["study"].pop("name")),
-    "labels of numbers": about(lambda told: told["study"].update(labels=[1])),
-    "sources of numbers": about(lambda told: told.update(sources=1)),
+    "key of no scenario": about(lambda reported: reported["job"]["scenario"].update({"start.y": 1.0})),
+    "scenario of numbers": about(lambda reported: reported["job"].update(scenario=5)),
+    "study without a name": about(lambda reported: reported["study"].pop("name")),
+    "labels of numbers": about(lambda reported: reported["study"].update(labels=[1])),
+    "sources of numbers": about(lambda reported: reported.update(sources=1)),
 }
 
 
@@ -233,9 +233,9 @@ def test_a_table_that_says_something_else_is_refused_in_one_line(
     import pyarrow.parquet as pq
 
     found = pq.read_table(whole)
-    told = json.loads(found.schema.metadata[b"apa"])
-    odd = FORGED[name](found, told)
-    pq.write_table(odd.replace_schema_metadata({b"apa": json.dumps(told).encode()}), tmp_path / "odd.parquet")
+    reported = json.loads(found.schema.metadata[b"apa"])
+    odd = FORGED[name](found, reported)
+    pq.write_table(odd.replace_schema_metadata({b"apa": json.dumps(reported).encode()}), tmp_path / "odd.parquet")
     assert main(["replay", str(tmp_path / "odd.parquet"), "--row", "0", "--no-page"]) == 2
     (*warnings, said) = capsys.readouterr().err.splitlines()
     assert all("has no checksum" in line for line in warnings)

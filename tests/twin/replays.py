@@ -91,15 +91,15 @@ class Fmi3:
         assert self.library.enter(component) == OK
         assert self.library.call("ExitInitializationMode", component) == OK
         heard = [(block, np.ascontiguousarray(given[:, block.places]).astype(block.dtype)) for block in self.inputs]
-        told = [(block, block.rows(len(given))) for block in self.outputs]
+        reported = [(block, block.rows(len(given))) for block in self.outputs]
         for k in range(len(given)):
-            good = all(block.call(component, rows, k) == OK for block, rows in told)
+            good = all(block.call(component, rows, k) == OK for block, rows in reported)
             if k + 1 < len(given):
                 good &= all(block.call(component, rows, k) == OK for block, rows in heard)
                 good &= self.library.step(component, k * step_ns / 1e9, step_ns / 1e9) == OK
             assert good, self.library.messages
         self.library.free(component)
         found = np.empty((len(given), sum(len(block.places) for block in self.outputs)))
-        for block, rows in told:
+        for block, rows in reported:
             found[:, block.places] = rows
         return found

@@ -122,15 +122,15 @@ def test_libcosim_reads_the_ssp(system: Any, ssp: Any, ours: Any) -> None:
     assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-@pytest.mark.parametrize("told", [{"parameter_set": "scenario"}, {}], ids=["told the set", "told nothing"])
-def test_ecos_reads_the_ssp(ssp: Any, ours: Any, told: Any) -> None:
+@pytest.mark.parametrize("reported", [{"parameter_set": "scenario"}, {}], ids=["told the set", "told nothing"])
+def test_ecos_reads_the_ssp(ssp: Any, ours: Any, reported: Any) -> None:
     """Where it is installed: it needs oneTBB besides its package. Not told the set it drives the same scenario."""
     try:
         from ecospy import EcosSimulation
     except (ImportError, OSError) as error:
         pytest.skip(f"no ecospy: {error}")
     with EcosSimulation(step_size=SCENARIO.step, ssp_path=str(ssp)) as simulation:
-        simulation.init(**told)
+        simulation.init(**reported)
         simulation.step(ours[1])
         found = [simulation.get_real(f"vehicle::{name}") for name in POSE]
     assert found == pytest.approx(ours[2], abs=TOLERANCE)
@@ -198,8 +198,8 @@ def test_the_ssp_says_what_other_tools_read(ssp: Any, system: Any) -> None:
         set_ones = {**getattr(SCENARIO, part.name)}.keys() & {item.name for item in part.of("parameter")}
         assert sets[part.name].count("<ssv:Parameter ") == len(set_ones) > 0
         assert f'<ssd:ParameterBinding source="resources/{part.name}.ssv" />' in text
-        told = {item.name: item.value for item in read_ssv(str(ssp), f"resources/{part.name}.ssv").parameters}
-        assert told == {variable.name: as_text(value) for variable, value in part.settings()}
+        reported = {item.name: item.value for item in read_ssv(str(ssp), f"resources/{part.name}.ssv").parameters}
+        assert reported == {variable.name: as_text(value) for variable, value in part.settings()}
 
 
 def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system: Any) -> None:

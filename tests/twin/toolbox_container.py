@@ -17,7 +17,7 @@ def write_container(system: Any, folder: Any) -> Any:
     linked = {(sender.name, name) for sender, _, name in links}
     for part in system.parts:
         shutil.copyfile(part.fmu, folder / files[part.name])
-    told = {
+    reported = {
         "name": f"{system.identifier}.fmu",
         "step_size": system.step,
         **{f"auto_{kind}": False for kind in ("link", "input", "output", "parameter")},
@@ -30,8 +30,8 @@ def write_container(system: Any, folder: Any) -> Any:
             if (part.name, variable.name) not in linked
         ],
     }
-    (folder / "system.json").write_text(json.dumps(told))
+    (folder / "system.json").write_text(json.dumps(reported))
     code = "from fmu_manipulation_toolbox.cli.fmucontainer import fmucontainer; fmucontainer()"
     command = [sys.executable, "-c", code, "-fmu-directory", str(folder), "-container", "system.json"]
     subprocess.run(command, check=True, capture_output=True)
-    return folder / told["name"]
+    return folder / reported["name"]

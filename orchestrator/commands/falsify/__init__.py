@@ -91,10 +91,10 @@ def _hunt(arguments: argparse.Namespace) -> int:
             count = "1 run " if len(error.args) == 1 else ""
             kept = f"{subject.runs} runs are kept, --resume goes on"
             raise BadInput(f"{study.name}: no result, for {count}{error}; {kept}") from error
-        told = as_json(subject, result)
+        reported = as_json(subject, result)
         page = write_page(subject, result, out)
     if arguments.json:
-        print(json.dumps({**told, "page": str(page)}, indent=2))
+        print(json.dumps({**reported, "page": str(page)}, indent=2))
     else:
         _print(subject, result, page)
     return NOT_PARKED if result.broken else PARKED

@@ -35,10 +35,10 @@ def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed")
         raise explain(error, file or None, list(Scenario.model_fields)) from None
     if "target" in carried:
         return LoggedRun(scenario, "")
-    told = pose_of(recording.parameters_of("controller"), "target")
+    reported = pose_of(recording.parameters_of("controller"), "target")
     if "vehicle" not in carried:
         scenario = scenario.model_copy(update={"vehicle": recording.parameters_of("vehicle")})
-    if told is None:
+    if reported is None:
         return LoggedRun(scenario, NO_TARGET)
-    target = Target(**dict(zip(Target.model_fields, told, strict=True)))
+    target = Target(**dict(zip(Target.model_fields, reported, strict=True)))
     return LoggedRun(scenario.model_copy(update={"target": target}), TOLD)

@@ -274,10 +274,10 @@ def _events(recording: Recording) -> list[Event]:
 
 def _target_difference(recording: Recording, scenario: Scenario) -> str:
     """Return how the target that the controller is told differs from the scenario's; empty if it does not."""
-    told = pose_of(recording.parameters_of("controller"), "target")
-    if scenario.target is None or told is None or told == scenario.target.pose:
+    reported = pose_of(recording.parameters_of("controller"), "target")
+    if scenario.target is None or reported is None or reported == scenario.target.pose:
         return ""
-    along, across, turn = in_frame(*told, scenario.target.pose)
+    along, across, turn = in_frame(*reported, scenario.target.pose)
     return (
         f"the controller is told another target, {along:+.3f} m along and {across:+.3f} m across the true one, "
         f"turned by {turn / RAD_PER_DEGREE:+.2f} deg; the run is judged by the true one"

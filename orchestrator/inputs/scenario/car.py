@@ -31,14 +31,14 @@ class VehicleDefinition(NamedTuple):
 
     name: str | None
     """Of the car it is made from."""
-    told: dict[str, object]
+    reported: dict[str, object]
     """Parameter of ``Car`` -> value, for both models."""
     plant: tuple[Layer, ...] = ()
     """What only the vehicle is told: masses, tyres, lags."""
 
     def layers(self, owner: str) -> list[Layer]:
         """Return what the model ``owner`` is told of its car, lowest first."""
-        both: Layer = ({owner: {f"car.{name}": value for name, value in self.told.items()}}, None)
+        both: Layer = ({owner: {f"car.{name}": value for name, value in self.reported.items()}}, None)
         return [*(self.plant if owner == "vehicle" else ()), both]
 
 
@@ -65,7 +65,7 @@ def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> Vehic
                 )
             car = _car_in(find_file(base, "cars", "car", beside), base)
         new = _numbers(changes, file)
-        car = car._replace(told=merge_flat(car.told, new.values, new.arrays))
+        car = car._replace(reported=merge_flat(car.reported, new.values, new.arrays))
     return car
 
 

@@ -289,8 +289,8 @@ class _SignalReader:
         if any(item.count for item in self._owners.values()):
             raise self._apart()
         info = {name: without_checksum(name, values) for name, values in metadata.items()}
-        told = _run_info({**info.pop("apa", {}), **info})
-        return recording_of(self._blocks or SignalBlocks([]), self._parameters, self._variables, told)
+        reported = _run_info({**info.pop("apa", {}), **info})
+        return recording_of(self._blocks or SignalBlocks([]), self._parameters, self._variables, reported)
 
 
 class RunInfo(BaseModel):

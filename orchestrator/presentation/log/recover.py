@@ -123,8 +123,8 @@ def _open_record(piece: RawRecord) -> list[RawRecord]:
         return list(chunk_records(piece))
     except Damage as damage:
         first, last = chunk_times(piece)
-        told = f" (it says: {first / 1e9:.2f} to {last / 1e9:.2f} s)" if first <= last < 1 << 60 else ""
-        raise Damage(piece.at, f"{str(damage).partition(': ')[2]}{told}") from damage
+        reported = f" (it says: {first / 1e9:.2f} to {last / 1e9:.2f} s)" if first <= last < 1 << 60 else ""
+        raise Damage(piece.at, f"{str(damage).partition(': ')[2]}{reported}") from damage
 
 
 def _begins_record(data: ByteSource, at: int) -> bool:

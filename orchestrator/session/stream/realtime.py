@@ -45,7 +45,7 @@ class Realtime:
 
     def report(self) -> dict[str, Any]:
         """Return how late the run was, and what was changed meanwhile."""
-        return {**self._pace.lateness_statistics(), "tuned": self._tuning.told if self._tuning else []}
+        return {**self._pace.lateness_statistics(), "tuned": self._tuning.reported if self._tuning else []}
 
 
 class _Ticks:

@@ -36,7 +36,7 @@ class Tuning:
         self._say = say
         self._wishes: deque[_Wish] = deque()
         self._known: dict[str, tuple[FmuInstance, Variable]] = {}
-        self.told: list[dict[str, Any]] = []
+        self.reported: list[dict[str, Any]] = []
         """What was changed, and when."""
         for instance in instances:
             model = models.get(instance.name)
@@ -75,7 +75,7 @@ class Tuning:
             assert isinstance(instance, TakesValues)
             instance.tune(item.name, wish.value)
             instance.parameters.values[instance.parameters.index[item.name]] = wish.value
-            self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value, "by": wish.by})
+            self.reported.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value, "by": wish.by})
             self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on, set by {wish.by}")
 
     def on_terminate(self, end: Termination) -> None:

@@ -86,16 +86,16 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
     line = 0.5 * loaded.vehicle["car.width"]
     vehicle = {**loaded.vehicle, **_scene(slot, line)}
-    told = {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": loaded.vehicle["car.width"]}
-    told["hsic.slot.rear_gap"] = -REAR_END - loaded.vehicle["car.rear_overhang"]
+    reported = {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": loaded.vehicle["car.width"]}
+    reported["hsic.slot.rear_gap"] = -REAR_END - loaded.vehicle["car.rear_overhang"]
     room = {"slot_front": REAR_END + slot, "slot_rear": -REAR_END, "line": line, "depth": DEPTH}
-    told |= {f"adaptive.room.{key}": value for key, value in room.items()}
+    reported |= {f"adaptive.room.{key}": value for key, value in room.items()}
     if searches:
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
-        told = {}
+        reported = {}
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in library_requirements(name) if item.signal not in UNJUDGED]
-    controls = {**loaded.controller, **told}
+    controls = {**loaded.controller, **reported}
     return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls}).with_requirements(
         limits
     )

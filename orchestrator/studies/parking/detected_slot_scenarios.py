@@ -35,15 +35,15 @@ AT_WALL = 0.5
 """Left between the driver's way past and the street's other side [m]."""
 
 
-def scenario_of(case: DetectedSlotCase, told: bool = False) -> Scenario:
-    """Return the scenario of a case; ``told``: the valet does not search, it is told the map and the target."""
+def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
+    """Return the scenario of a case; ``reported``: the valet does not search, it is told the map and the target."""
     target, slot = standing_of(case)
     wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
         "system": 7,
         "plan.margin": PLAN_MARGIN,
-        "search.active": not told,
+        "search.active": not reported,
         "search.wish": int(wish),
         "search.open_ended": case.neighbours == "one",
         "search.way": way_past(case).way,
@@ -51,7 +51,7 @@ def scenario_of(case: DetectedSlotCase, told: bool = False) -> Scenario:
     if case.side < 0:
         target = target.model_copy(update={"y": -target.y, "heading": -target.heading})
         slot = slot.model_copy(update={"y": -slot.y, "heading": -slot.heading})
-    if told:
+    if reported:
         controller |= {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
     return Scenario(
         name="valet-slots",
@@ -70,7 +70,7 @@ def out_of(case: DetectedSlotCase) -> Scenario:
     It is told the map, and where to hand over: along the street, its middle beyond the neighbour on that side.
     """
     draw = random.Random(case.number + SEED_STRIDE * case.lot + 41)
-    scenario, place, street = scenario_of(case, told=True), place_of(case), _street(case)
+    scenario, place, street = scenario_of(case, reported=True), place_of(case), _street(case)
     inside, way = scenario.target, -1.0 if case.dead_end else draw.choice((1.0, -1.0))
     assert inside is not None
     target = Target(
@@ -83,11 +83,11 @@ def out_of(case: DetectedSlotCase) -> Scenario:
         "start.y": inside.y + draw.uniform(-PARKED_POSE_ERROR, PARKED_POSE_ERROR),
         "start.heading": inside.heading + draw.uniform(-TURNED, TURNED),
     }
-    told = {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
+    reported = {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
     return scenario.model_copy(
         update={
             "vehicle": scenario.vehicle | start,
-            "controller": scenario.controller | told,
+            "controller": scenario.controller | reported,
             "target": target,
             "slot": None,
             "requirements": [*library_requirements("valet")],

@@ -35,16 +35,16 @@ WAY = "way"
 PLANNING_TIME = 10.0
 
 
-def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False, ways: bool = False) -> Study:
-    """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked.
+def study(runs: int = 1000, lot: int = 0, reported: bool = False, out: bool = False, ways: bool = False) -> Study:
+    """Return so many runs; ``reported``: the same with the map and the target told, no search: what could be parked.
 
     ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
     short one in which the valet receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
     """
     scenarios = []
     for case in cases(runs, lot):
-        scenario = out_of(case) if out else scenario_of(case, told)
-        scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if told or out else scenario))
+        scenario = out_of(case) if out else scenario_of(case, reported)
+        scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if reported or out else scenario))
         if ways:
             scenarios.append(LabelledScenario(_labels(case, WAY), _planning_scenario(case)))
     scenario, design = design_of(scenarios)
@@ -59,8 +59,10 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False,
 
 def _planning_scenario(case: DetectedSlotCase) -> Scenario:
     """Return the short scenario in which the valet plans with the map and the target told."""
-    told = _with_map(scenario_of(case, told=True))
-    return told.model_copy(update={"stop_time": PLANNING_TIME, "controller": told.controller | {"plan.at_once": 100}})
+    reported = _with_map(scenario_of(case, reported=True))
+    return reported.model_copy(
+        update={"stop_time": PLANNING_TIME, "controller": reported.controller | {"plan.at_once": 100}}
+    )
 
 
 def _with_map(scenario: Scenario) -> Scenario:

@@ -116,11 +116,11 @@ def _controller_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
 
     A controller that was told another target than the scenario's keeps to that.
     """
-    told, true = job.scenario["controller"], job.scenario["target"]
+    reported, true = job.scenario["controller"], job.scenario["target"]
     return [
         (f"target.{name}", value)
         for owner, name, value in zip(job.owners, job.names, values, strict=True)
-        if owner == "target" and told.get(f"target.{name}") == true[name]
+        if owner == "target" and reported.get(f"target.{name}") == true[name]
     ]
 
 

@@ -84,9 +84,9 @@ class _ModeSeen:
         self._seen = _Seen(Counter(), Counter())
 
     def add(self, listed: ModeList, recording: Recording, signal: str) -> None:
-        told = {name: value for value, name in recording.states(signal).items()}
+        reported = {name: value for value, name in recording.states(signal).items()}
         names = self._listed if listed.transitions else self._told
-        names |= {float(value): word(name) for name, value in (listed.states or told).items()}
+        names |= {float(value): word(name) for name, value in (listed.states or reported).items()}
         self._pairs |= dict.fromkeys(listed.pairs)
         values = recording.signals[signal]
         self._seen.values.update(values.tolist())

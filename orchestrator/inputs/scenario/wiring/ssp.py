@@ -20,11 +20,11 @@ def ssp_scenario(path: Path) -> dict[str, Any]:
     If its controller is told a target, as ours is, that is the scenario's; else the run is one without a task of ours.
     """
     system, content = _read(path), {"system": {"ssp": str(path)}}
-    told = system.parameters.get("controller", {})
+    reported = system.parameters.get("controller", {})
     times = {"stop_time": system.stop, "step": system.step}
     made: dict[str, Any] = {**content, **{key: value for key, value in times.items() if value is not None}}
-    if all(name in told for name in TARGET) and "vehicle" in system.components:
-        return {**made, "target": {name.partition(".")[2]: told[name] for name in TARGET}}
+    if all(name in reported for name in TARGET) and "vehicle" in system.components:
+        return {**made, "target": {name.partition(".")[2]: reported[name] for name in TARGET}}
     return {**made, "task": "open_loop", "requirements": []}
 
 

@@ -50,8 +50,8 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     """Return what differs from run to run, by the names of a study's fields."""
     cars = [CARS[name] for name in CARS]
     chosen = f["car"].astype(int)
-    told = _select([car_parameters(car) for car in cars], chosen)
-    found = {f"{owner}.{name}": values for owner in ("vehicle", "controller") for name, values in told.items()}
+    reported = _select([car_parameters(car) for car in cars], chosen)
+    found = {f"{owner}.{name}": values for owner in ("vehicle", "controller") for name, values in reported.items()}
     size = _select([_size(car) for car in cars], chosen)
     kind = f["kind"].astype(int)
     shortest = np.array([[shortest_slot(number, car, ISO) for number in KINDS] for car in cars])[chosen, kind]
@@ -60,8 +60,8 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     neighbours = _neighbours(f, size)
     found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
     found |= _standing(f, size, neighbours) | _start(f, size, neighbours)
-    found |= _sensors(f, told, seeds) | _motion(f, told)
-    return found | _person(f, size) | _mover(f, size) | _sensor_faults(f, told)
+    found |= _sensors(f, reported, seeds) | _motion(f, reported)
+    return found | _person(f, size) | _mover(f, size) | _sensor_faults(f, reported)
 
 
 def _select(items: list[dict[str, float]], chosen: Array) -> dict[str, Array]:
@@ -184,14 +184,14 @@ def _acceleration(f: F) -> Array:
     return np.minimum(1.5, 2.0 * f["grip"])
 
 
-def _sensors(f: F, told: F, seeds: Seeds) -> dict[str, Array]:
+def _sensors(f: F, reported: F, seeds: Seeds) -> dict[str, Array]:
     ultrasonic = {f"vehicle.ultrasonic.{name}": f[name] for name in ("noise", "dropout")}
     drawn = np.array([np.random.default_rng([int(seed), 7]).uniform(-1.0, 1.0, (12, 3)) for seed in seeds])
     sizes = (f["mount_place"], f["mount_place"], np.radians(f["mount_yaw"]))
     for number in range(12):
         for place, axis in enumerate(("x", "y", "yaw")):
             name = f"car.ultrasonic.mounts[{number + 1}].{axis}"
-            ultrasonic[f"vehicle.{name}"] = told[name] + sizes[place] * drawn[:, number, place]
+            ultrasonic[f"vehicle.{name}"] = reported[name] + sizes[place] * drawn[:, number, place]
     ultrasonic["vehicle.car.ultrasonic.half_angle"] = np.radians(f["cone"])
     ultrasonic["vehicle.car.ultrasonic.resolution"] = f["resolution"]
     both = {f"{owner}.car.ultrasonic.cycle": f["cycle"] for owner in ("vehicle", "controller")}
@@ -204,10 +204,10 @@ def _sensors(f: F, told: F, seeds: Seeds) -> dict[str, Array]:
     return ultrasonic | both | odometry
 
 
-def _motion(f: F, told: F) -> dict[str, Array]:
+def _motion(f: F, reported: F) -> dict[str, Array]:
     return {
         "vehicle.body": np.array(BODIES, dtype=float)[f["body"].astype(int)],
-        "vehicle.car.steering.rate_limit": told["car.steering.rate_limit"] * f["steering_rate"],
+        "vehicle.car.steering.rate_limit": reported["car.steering.rate_limit"] * f["steering_rate"],
         "vehicle.steering.backlash": np.radians(f["backlash"]),
         "vehicle.steering.dead_time": f["dead_time"],
         "vehicle.steering.lag": f["lag"],
@@ -270,9 +270,9 @@ def _mover(f: F, size: F) -> dict[str, Array]:
     return found
 
 
-def _sensor_faults(f: F, told: F) -> dict[str, Array]:
+def _sensor_faults(f: F, reported: F) -> dict[str, Array]:
     """Return what the controller hears of a sensor that fails: nothing in reach, or no number."""
-    value = np.where(f["lost"] == NO_SENSOR, told["car.ultrasonic.max_range"], np.nan)
+    value = np.where(f["lost"] == NO_SENSOR, reported["car.ultrasonic.max_range"], np.nan)
     found: dict[str, Array] = {}
     for number in range(SENSOR_COUNT):
         lost = (f["lost"] >= NO_SENSOR) & (f["lost_sensor"] == number)

@@ -44,6 +44,7 @@ ENVIRONMENTS: dict[Scenes, Environment] = {
     "perpendicular": Environment(60.0, partial(_slot, PERPENDICULAR)),
     "world": Environment(120.0, _world),
     "tpcap": Environment(200.0, _files, takes_files=True),
+    "parkbench": Environment(200.0, _files, takes_files=True),
 }
 FILE_IDS = tuple(name for name, scenes in IDS.items() if ENVIRONMENTS[scenes].takes_files)
 """Registered environments whose scenes are those of files."""

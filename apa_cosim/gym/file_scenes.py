@@ -1,4 +1,4 @@
-"""Scenes of files: cases of TPCAP (CSV), or scenarios (YAML), such as imported ones of other benchmarks.
+"""Scenes of files: cases of TPCAP (CSV), scenes of ParkBench (JSON), or scenarios with a target (YAML).
 
 The polygons of a scene are obstacles to the car and to the verdict. Its sensors measure the boxes of the vehicle's
 scene only: the edges nearest to the target are put there, as many as there is room for.
@@ -25,6 +25,7 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.scenario.tpcap import read_tpcap
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.studies.benchmark.parkbench import read_parkbench
 from orchestrator.studies.parking.cases import BODY
 from orchestrator.studies.parking.world.study import BODY_STEP
 from orchestrator.studies.sweep.disturbed import numbers_for
@@ -40,7 +41,8 @@ FARTHEST_SHARE = 2.0
 """A car that is this many times farther from its target than at its start has left the place."""
 POSITION = ("final heading", "final lateral position")
 """What GB/T 41630 asks of the final pose."""
-TPCAP = ".csv"
+READERS = {".csv": read_tpcap, ".json": read_parkbench}
+"""Suffix of a benchmark's file -> its reader."""
 
 
 class FileScenes:
@@ -75,11 +77,12 @@ class FileScenes:
 def _scenario(file: Path) -> Scenario:
     if not file.is_file():
         raise BadInput("no such file", file=file)
-    if file.suffix.lower() != TPCAP:
+    reader = READERS.get(file.suffix.lower())
+    if reader is None:
         return load_scenario(str(file))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{file.stem}.yaml"
-        path.write_text(yaml.safe_dump(read_tpcap(file)), encoding="utf-8")
+        path.write_text(yaml.safe_dump(reader(file)), encoding="utf-8")
         return load_scenario(str(path)).model_copy(update={"file": str(file)})
 
 

@@ -23,6 +23,7 @@ from gymnasium.vector import AutoresetMode
 
 import apa_cosim
 from apa_cosim.gym import ParkingEnv, ParkingVectorEnv
+from tests.benchmark.parkbench_scene import scene, write
 
 CASE = "-9, 4, 0, 0, 0, 0, 2, 4, 3, -12,-8, 4,-8, 4,-3, -12,-3, 6,-4, 9,-4, 8,4"
 """A case of TPCAP: a wall beside the target, a triangle ahead."""
@@ -40,6 +41,11 @@ def case(tmp_path: Path) -> Path:
     file = tmp_path / "case.csv"
     file.write_text(CASE)
     return file
+
+
+@pytest.fixture
+def parkbench_scene(tmp_path: Path) -> Path:
+    return write(tmp_path / "scene.json", scene())
 
 
 def actions(count: int, cars: int = 1, seed: int = 5) -> Iterator[Any]:
@@ -70,9 +76,12 @@ def is_same(one: Any, other: Any) -> bool:
     return bool(one == other or (one != one and other != other))
 
 
-@pytest.mark.parametrize("name", ["apa/Parallel-v0", "apa/Perpendicular-v0", "apa/World-v0", "apa/TPCAP-v0"])
-def test_the_checker_of_gymnasium_finds_nothing(name: str, case: Path) -> None:
-    given: dict[str, Any] = {"files": [case]} if "TPCAP" in name else {}
+@pytest.mark.parametrize(
+    "name", ["apa/Parallel-v0", "apa/Perpendicular-v0", "apa/World-v0", "apa/TPCAP-v0", "apa/ParkBench-v0"]
+)
+def test_the_checker_of_gymnasium_finds_nothing(name: str, case: Path, parkbench_scene: Path) -> None:
+    files = {"apa/TPCAP-v0": [case], "apa/ParkBench-v0": [parkbench_scene]}
+    given: dict[str, Any] = {"files": files[name]} if name in files else {}
     env = gymnasium.make(name, render_mode="rgb_array", body="kinematic", **given)
     check_env(env.unwrapped)
     env.close()

@@ -305,6 +305,17 @@ def _add(store: PlanStore, pose: Pose, way: float, k: float, speed: float) -> Po
     return drive(pose, way, k)
 
 
+class NormalMatrix(NamedTuple):
+    """J W J^T: symmetric, three by three, by position and heading of the end."""
+
+    xx: float
+    xy: float
+    xh: float
+    yy: float
+    yh: float
+    hh: float
+
+
 class EndSlope(NamedTuple):
     """By how much the path's end moves where a piece becomes longer [m/m, rad/m]."""
 
@@ -324,11 +335,8 @@ def _end_slope(store: PlanStore, number: int, direction: float, end: Pose) -> En
     )
 
 
-def _correct_lengths(store: PlanStore, end: Pose, turn: float) -> bool:
-    """Change the lengths so that the end moves to the goal, to first order; returns whether they can.
-
-    With J the slopes and W the lengths, the change is W J^T (J W J^T)^-1 e: a matrix of three by three, by its minors.
-    """
+def _normal_matrix(store: PlanStore, end: Pose) -> NormalMatrix:
+    """Return J W J^T of the slopes J of the end and the lengths W of the pieces without transitions."""
     xx = 0.0
     xy = 0.0
     xh = 0.0
@@ -348,15 +356,24 @@ def _correct_lengths(store: PlanStore, end: Pose, turn: float) -> bool:
             yh += weight * slope.y * slope.heading
             hh += weight * slope.heading * slope.heading
             piece += 1
-    m00 = yy * hh - yh * yh
-    m01 = xh * yh - xy * hh
-    m02 = xy * yh - xh * yy
-    size = xx * m00 + xy * m01 + xh * m02
-    if size < SINGULAR * (xx + yy) * (xx + yy) * hh:
+    return NormalMatrix(xx, xy, xh, yy, yh, hh)
+
+
+def _correct_lengths(store: PlanStore, end: Pose, turn: float) -> bool:
+    """Change the lengths so that the end moves to the goal, to first order; returns whether they can.
+
+    With J the slopes and W the lengths, the change is W J^T (J W J^T)^-1 e: a matrix of three by three, by its minors.
+    """
+    sums = _normal_matrix(store, end)
+    m00 = sums.yy * sums.hh - sums.yh * sums.yh
+    m01 = sums.xh * sums.yh - sums.xy * sums.hh
+    m02 = sums.xy * sums.yh - sums.xh * sums.yy
+    size = sums.xx * m00 + sums.xy * m01 + sums.xh * m02
+    if size < SINGULAR * (sums.xx + sums.yy) * (sums.xx + sums.yy) * sums.hh:
         return False
-    m11 = xx * hh - xh * xh
-    m12 = xy * xh - xx * yh
-    m22 = xx * yy - xy * xy
+    m11 = sums.xx * sums.hh - sums.xh * sums.xh
+    m12 = sums.xy * sums.xh - sums.xx * sums.yh
+    m22 = sums.xx * sums.yy - sums.xy * sums.xy
     x = (-m00 * end.x - m01 * end.y + m02 * turn) / size
     y = (-m01 * end.x - m11 * end.y + m12 * turn) / size
     h = (-m02 * end.x - m12 * end.y + m22 * turn) / size

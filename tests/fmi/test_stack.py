@@ -21,7 +21,7 @@ BOUND = STACK // 2
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("fmi", [pytest.param(2, marks=pytest.mark.release), 3])
 def test_no_chain_of_calls_takes_half_of_a_small_stack(any_model: Any, fmi: int, tmp_path: Path) -> None:
     for name, text in fmu_sources(any_model, "{token}", fmi).items():
         (tmp_path / name).write_text(text)

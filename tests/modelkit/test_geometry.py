@@ -43,9 +43,9 @@ def random_box(draw: random.Random, span: float = 5.0) -> Box:
     )
 
 
-def test_gap_and_overlap_of_100_000_pairs() -> None:
+def test_gap_and_overlap_of_20_000_pairs() -> None:
     draw = random.Random(1)
-    ours = [(random_box(draw), random_box(draw)) for _ in range(100_000)]
+    ours = [(random_box(draw), random_box(draw)) for _ in range(20_000)]
     first = _polygons([a for a, _ in ours])
     second = _polygons([b for _, b in ours])
     gaps = shapely.distance(first, second)
@@ -58,7 +58,7 @@ def test_gap_and_overlap_of_100_000_pairs() -> None:
         if area > 1e-9 or gap > 1e-9:
             assert boxes_overlap(a, b) == (area > 1e-9)
         overlaps += area > 1e-9
-    assert overlaps > 10_000
+    assert overlaps > 2_000
 
 
 def _polygons(boxes: list[Box]) -> list[shapely.Geometry]:

@@ -158,7 +158,13 @@ def test_a_finished_study_is_not_run_again_and_another_takes_its_page_away(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("words", [["sweep", "STUDY", "--no-page"], ["sweep", "STUDY", "--no-page", "--fmus", "none"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["sweep", "STUDY", "--no-page"],
+        pytest.param(["sweep", "STUDY", "--no-page", "--fmus", "none"], marks=pytest.mark.release),
+    ],
+)
 def test_no_module_of_the_current_folder_is_run(words: Any, tmp_path: Path) -> None:
     (tmp_path / "trial.yaml").write_text(STUDY.replace("X", "2.0"))
     for name in ("struct", "math", "random", "pickle", "multiprocessing", "ziglang", "numpy", "orchestrator"):

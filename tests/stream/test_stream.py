@@ -95,7 +95,7 @@ def shown(scenario: Any, files: Any = None, **options: Any) -> Iterator[Any]:
     assert not thread.is_alive()
 
 
-@pytest.mark.parametrize("kind", ["none", "native"])
+@pytest.mark.parametrize("kind", [pytest.param("none", marks=pytest.mark.release), "native"])
 def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind: str, tmp_path: Path) -> None:
     scenario, log = load_scenario("guo2015-case4", ["stop_time=60"]), tmp_path / "run.mcap"
     files = fmu_files("native") if kind == "native" else None

@@ -106,6 +106,7 @@ def test_its_exchanges_are_exact_at_any_communication_step(name: Any, millisecon
     ] == []
 
 
+@pytest.mark.release  # the container of a pair, above, is the same code
 def test_the_container_of_fmi_2_gives_them(recording: Any) -> None:
     model = one_model(CASE)
     order = [item.name for item in variables(model.outputs) if model.shows(item.name)]

@@ -161,7 +161,7 @@ def valet_in_c(tmp_path_factory: pytest.TempPathFactory) -> CModel:
     [
         pytest.param("valet-angled-45", 22.0, marks=pytest.mark.release),
         ("valet-obstacle-on-path", 24.0),
-        ("valet-search-perpendicular", 13.0),
+        pytest.param("valet-search-perpendicular", 13.0, marks=pytest.mark.release),
     ],
 )
 def test_a_drive_in_c_has_the_bits_of_cpython(

@@ -14,6 +14,8 @@ from orchestrator.simulation.cosim.fmu_files import sources_hash
 FOLDER = DIST / "tests"
 KEPT_FINGERPRINTS = 3
 """Of so many states of the sources the FMUs are kept, for those who go back and forth between two commits."""
+KINDS = {2: "native", 3: "fmi3"}
+"""Version of FMI -> kind, by which a folder of FMUs is known where others are built beside them."""
 
 
 @cache
@@ -31,6 +33,6 @@ def folder_of_fmus() -> Path:
 
 def native_fmu_of(model: Model, fmi: int = 2) -> Path:
     """Return the path of a model's native FMU for this machine; tests copy it before they change it."""
-    folder = folder_of_fmus() / f"fmi{fmi}"
+    folder = folder_of_fmus() / KINDS[fmi]
     with one_at_a_time(folder / model.name):
         return native_fmu.build(model, folder, [host()], fmi=fmi)

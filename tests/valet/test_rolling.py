@@ -11,7 +11,8 @@ from controller_fmu.planning.plan import Path, Piece
 from controller_fmu.planning.stretch import trimmed
 from controller_fmu.planning.task import drive
 from controller_fmu.valet.params import ValetDriveParams, ValetParams
-from controller_fmu.valet.rolling import FARTHER, QUICKEST, ROOMIEST, SLOWEST, ahead_of, aim_at, joint_of, rest_before
+from controller_fmu.valet.rolling import FARTHER, ROOMIEST, SLOWEST, ahead_of, aim_at, joint_of, rest_before
+from controller_fmu.valet.slot import QUICKEST
 from modelkit.vocabulary import Pose
 
 PARAMS = ValetParams()

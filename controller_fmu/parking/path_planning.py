@@ -171,14 +171,15 @@ def without_path(
 def is_acceptable(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> bool:
     """Return whether a vehicle at ``pose`` has arrived, if not as finely as was meant."""
     if memory.strategy != Strategy.SLOT:
-        return is_near(pose, memory.plan.request.goal, params.final.accepted, params.final.accepted_heading)
+        accepted = params.final.accepted
+        return is_near(pose, memory.plan.request.goal, accepted, accepted, params.final.accepted_heading)
     return stands_in_slot(slot_in_map(memory, pose, params), pose, params)
 
 
-def is_near(pose: Pose, goal: Pose, position: float, heading: float) -> bool:
-    """Return whether a pose is within ``position`` [m], along and across, and ``heading`` [rad] of a goal."""
+def is_near(pose: Pose, goal: Pose, along: float, across: float, heading: float) -> bool:
+    """Return whether a pose is within ``along`` and ``across`` [m], and ``heading`` [rad], of a goal."""
     error = pose_to_frame(pose, goal)
-    return abs(error.x) < position and abs(error.y) < position and abs(wrap_angle(error.heading)) < heading
+    return abs(error.x) < along and abs(error.y) < across and abs(wrap_angle(error.heading)) < heading
 
 
 def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> SlotCandidate:
@@ -199,14 +200,13 @@ def corrected_slot(
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
     """Return whether a vehicle at ``pose`` is parked, if not as finely as was meant."""
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    error = pose_to_frame(pose, goal_pose(slot, outline, params.slot))
+    goal = goal_pose(slot, outline, params.slot)
     room = 0.5 * (slot.ahead.start - slot.behind.end)
     along = params.final.accepted
     if slot.type == SlotType.PARALLEL:
         along = max(along, room - outline.half_length)
-    near = abs(error.x) < along and abs(error.y) < params.final.accepted
-    near = near and overhang_of(slot, outline, pose) < params.slot.stand_out
-    return near and abs(wrap_angle(error.heading)) < params.final.accepted_heading
+    near = is_near(pose, goal, along, params.final.accepted, params.final.accepted_heading)
+    return near and overhang_of(slot, outline, pose) < params.slot.stand_out
 
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:

@@ -17,7 +17,6 @@ from controller_fmu.parking.following.path_tracking import (
     standstill_wheel_angle,
     track_path,
 )
-from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.silent_sensor import silent_sensors
@@ -44,6 +43,7 @@ from controller_fmu.parking.path_planning import (
     continue_plan,
     forget_what_left,
     is_acceptable,
+    is_near,
     max_manoeuvres,
     slot_in_map,
     with_way_out,
@@ -64,7 +64,7 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
-from modelkit.maths import clamp, sign, wrap_angle
+from modelkit.maths import clamp, sign
 from modelkit.vocabulary import Pose
 
 REPLAN_TIME = 0.3
@@ -249,10 +249,8 @@ def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parki
     if memory.strategy == Strategy.SLOT:
         outline = vehicle_outline(params.car, params.plan.curvature_fraction)
         goal = goal_pose(slot_in_map(memory, inputs.odometry, params), outline, params.slot)
-    error = pose_to_frame(inputs.odometry, goal)
-    near = abs(error.x) < params.final.position + abs(params.drive.rolling_offset)
-    near = near and abs(error.y) < params.final.position
-    return near and abs(wrap_angle(error.heading)) < params.final.heading
+    along = params.final.position + abs(params.drive.rolling_offset)
+    return is_near(inputs.odometry, goal, along, params.final.position, params.final.heading)
 
 
 def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:

@@ -9,10 +9,10 @@ import pytest
 
 from modelkit.geometry import Box, boxes_depth, boxes_overlap, outline
 from modelkit.vocabulary import Pose
+from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.studies.parking.parking_world.bays import bay_count, in_bays, stands_in_a_bay
 from orchestrator.studies.parking.parking_world.factors import FACTORS, HITCH
 from orchestrator.studies.parking.parking_world.outcome import (
-    CAR,
     DRIVER,
     EMPTY,
     FALSE,
@@ -106,7 +106,7 @@ def scenes() -> list[DrawnScene]:
                 )
                 for number in range(1, SECOND_LEG + 1)
             },
-            [float(found[f"vehicle.car.{name}"][row]) for name in CAR],
+            [float(found[key][row]) for key in CAR_KEYS],
             Pose(*(float(found[f"vehicle.start.{axis}"][row]) for axis in ("x", "y", "heading"))),
             float(slot[row] + 12.0),
             float(found["vehicle.driver.profile[1].speed"][row]),
@@ -189,7 +189,7 @@ def test_what_would_have_been_touched_standing(speed: float, walks_at: float, un
     """A pedestrian crosses at x = 4 before a car that reaches up to x = 3.9; 1 m farther back it is clear of him."""
     person = {"x": 4.0, "y": -3.0, "length": 0.5, "width": 0.5, "speed_y": 1.0, "moves_at": walks_at}
     row = {f"vehicle.scene.boxes[{FIRST_LEG}].{name}": value for name, value in person.items()}
-    row |= dict(zip((f"vehicle.car.{name}" for name in CAR), (2.6, 0.9, 0.8, 1.8), strict=True))
+    row |= dict(zip(CAR_KEYS, (2.6, 0.9, 0.8, 1.8), strict=True))
     row |= {"touched.x": 0.4, "touched.y": 0.0, "touched.heading": 0.0, "touched.front_wheel_angle": 0.0}
     assert is_unavoidable({**row, "touched.speed": speed, "touched.time": 2.0}) == unavoidable
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from orchestrator.evaluation.verdict.standing import in_frames, outline_margin
+from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, ISO
@@ -65,9 +66,7 @@ def stands_in_a_bay(columns: Mapping[str, Array]) -> NDArray[np.bool_]:
     """Return whether each vehicle stands in one of its empty bays, within GB/T 41630; False where there are none."""
     turned, aside, out, manoeuvres = _limits()
     poses = np.column_stack([columns[f"final.{axis}"] for axis in POSE])
-    wheelbase, front, rear, width = (
-        np.asarray(columns[f"vehicle.car.{name}"]) for name in ("wheelbase", "front_overhang", "rear_overhang", "width")
-    )
+    wheelbase, front, rear, width = (np.asarray(columns[key]) for key in CAR_KEYS)
     cars = np.column_stack([wheelbase + front, rear, 0.5 * width, wheelbase])
     stands = np.full(len(poses), False)
     for bay in range(MAX_BAYS):

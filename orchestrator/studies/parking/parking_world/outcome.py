@@ -19,6 +19,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.measures import Instants, Measure
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parking_world.bays import in_bays, stands_in_a_bay, with_bays
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
@@ -63,7 +64,6 @@ COLUMNS = {
 MOVING_OBJECTS = (*NEIGHBOUR.values(), OVERHANG, FIRST_LEG, SECOND_LEG)
 NAMES = ("outcome", "reason", "kind", *MEASURES, *(WITHIN.format(name) for name in GBT.values()))
 EMPTY = Obstacle()._asdict()
-CAR = ("wheelbase", "front_overhang", "rear_overhang", "width")
 
 
 def _outcome_columns(columns: Columns) -> Mapping[str, Array]:
@@ -98,7 +98,7 @@ def is_unavoidable(row: Mapping[str, Any]) -> bool:
     """Return whether a moving object would also have touched the car, had that stood for ``STOOD_FOR`` before."""
     if math.isnan(row["touched.speed"]):
         return False
-    car = [row[f"vehicle.car.{name}"] for name in CAR]
+    car = [row[key] for key in CAR_KEYS]
     pose = Pose(*(row[f"touched.{axis}"] for axis in ("x", "y", "heading")))
     curvature = math.tan(row["touched.front_wheel_angle"]) / car[0]
     stood = outline(pose_along_arc(pose, -STOOD_FOR * row["touched.speed"], curvature), *car)

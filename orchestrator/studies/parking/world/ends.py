@@ -14,6 +14,7 @@ from orchestrator.evaluation.verdict.measures import Instants, Measure
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.evaluation.verdict.standing import outline_margin
+from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parkings import GBT
@@ -150,7 +151,7 @@ def _margin(row: Mapping[str, Any], out: float) -> float:
     """Return how far [m] a car is within its slot at the end, if that lies so much further ``out``; negative: not."""
     c, s = math.cos(row["slot.heading"]), math.sin(row["slot.heading"])
     slot = [row["slot.x"] + out * c, row["slot.y"] + out * s, *(row[f"slot.{name}"] for name in SLOT)]
-    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
+    wheelbase, front, rear, width = (row[key] for key in CAR_KEYS)
     car = [wheelbase + front, rear, 0.5 * width, wheelbase]
     pose = [row[f"final.{axis}"] for axis in AXES]
     return float(outline_margin(*(np.array([item]) for item in (pose, slot, car)))[0])
@@ -209,7 +210,6 @@ def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
 BOXES = range(1, len(THINGS))
 EMPTY = Obstacle()._asdict()
 SLOT = ("heading", "length", "width")
-CAR = ("wheelbase", "front_overhang", "rear_overhang", "width")
 
 
 def _box(number: int) -> str:
@@ -223,7 +223,7 @@ def _is_moving(row: Mapping[str, Any], name: str) -> bool:
 
 
 def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
-    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
+    wheelbase, front, rear, width = (row[key] for key in CAR_KEYS)
     front, rear = (WHEEL, WHEEL) if under else (front, rear)
     return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
 

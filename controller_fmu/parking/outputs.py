@@ -4,6 +4,7 @@ from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
+from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
@@ -85,6 +86,7 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
         segment=memory.progress.segment,
         is_blocked=memory.verdict.is_blocked,
         free_distance=memory.verdict.free_distance,
+        parking_time=seconds(memory.clocks.running),
         goal=memory.plan.request.goal,
         slot=_slot_signals(memory.search.slot),
         offered=tuple(_slot_signals(memory.search.offered[number]) for number in range(MAX_OFFERS)),

@@ -72,6 +72,7 @@ class ParkingSignals(NamedTuple):
     segment: Annotated[int, Signal("1", "the one in hand, from 0", 0)] = 0
     is_blocked: Annotated[bool, Signal("1", "the collision monitor keeps the vehicle standing")] = False
     free_distance: Annotated[float, Signal("m", "free along the motion in hand; 100: more than looked at")] = 100.0
+    parking_time: Annotated[float, Signal("s", "since the driver confirmed", 0.0)] = 0.0
     goal: Annotated[Pose, Group("pose to park at")] = Pose()
     slot: SlotSignals = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS

@@ -25,7 +25,8 @@ from orchestrator.studies.parking.parking_world.outcome import (
 )
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
-from orchestrator.studies.parking.parking_world.study import VALET_SYSTEM, study
+from orchestrator.studies.parking.parking_world.study import study
+from orchestrator.studies.parking.studied_systems import VALET_SYSTEM
 from orchestrator.studies.sweep.study.space import Space
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 

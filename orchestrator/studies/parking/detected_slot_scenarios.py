@@ -20,6 +20,7 @@ from orchestrator.studies.parking.detected_slot_cases import (
     standing_of,
 )
 from orchestrator.studies.parking.imperfect import imperfect
+from orchestrator.studies.parking.studied_systems import VALET_SYSTEM
 
 STOP_TIME = 240.0
 PLAN_MARGIN = 0.12
@@ -41,7 +42,7 @@ def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
     wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
-        "system": 7,
+        "system": VALET_SYSTEM,
         "plan.margin": PLAN_MARGIN,
         "search.active": not reported,
         "search.wish": int(wish),

@@ -5,29 +5,23 @@ from typing import Any
 
 from rich.table import Table as Printed
 
-from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.inputs.scenario.obstacle_map import map_of
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.detected_slot_cases import DetectedSlotCase, cases
 from orchestrator.studies.parking.detected_slot_scenarios import out_of, scenario_of
+from orchestrator.studies.parking.studied_systems import (
+    PARKING_SYSTEM,
+    VALET_SYSTEM,
+    check_system,
+    driven_by,
+    plan_measures,
+    study_name,
+)
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
-
-MEASURES = {
-    "plans": Measure("last", "controller.valet.plans"),
-    "margin": Measure("last", "controller.valet.margin"),
-    "layout": Measure("last", "controller.valet.slot.layout"),
-    "into": Measure("last", "controller.valet.slot.heading"),
-    "width": Measure("last", "controller.valet.slot.width"),
-    "depth": Measure("last", "controller.valet.slot.depth"),
-    "ax": Measure("last", "controller.valet.slot.ax"),
-    "ay": Measure("last", "controller.valet.slot.ay"),
-    "target_x": Measure("last", "controller.valet.target.x"),
-    "target_y": Measure("last", "controller.valet.target.y"),
-}
 
 FACTORS = ("angle", "neighbours", "end", "street", "wish")
 WAY = "way"
@@ -35,26 +29,36 @@ WAY = "way"
 PLANNING_TIME = 10.0
 
 
-def study(runs: int = 1000, lot: int = 0, reported: bool = False, out: bool = False, ways: bool = False) -> Study:
+def study(
+    runs: int = 1000,
+    lot: int = 0,
+    reported: bool = False,
+    out: bool = False,
+    ways: bool = False,
+    system: int = VALET_SYSTEM,
+) -> Study:
     """Return so many runs; ``reported``: the same with the map and the target told, no search: what could be parked.
 
     ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
-    short one in which the valet receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
+    short one in which the system receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
+    ``system``: what drives. Raises ``BadInput`` if that cannot.
     """
+    check_system("valet-slots", system, (VALET_SYSTEM, PARKING_SYSTEM))
     scenarios = []
     for case in cases(runs, lot):
         scenario = out_of(case) if out else scenario_of(case, reported)
-        scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if reported or out else scenario))
+        scenario = _with_map(scenario) if reported or out else scenario
+        scenarios.append(LabelledScenario(_labels(case, ""), driven_by(scenario, system)))
         if ways:
-            scenarios.append(LabelledScenario(_labels(case, WAY), _planning_scenario(case)))
+            scenarios.append(LabelledScenario(_labels(case, WAY), driven_by(_planning_scenario(case), system)))
     scenario, design = design_of(scenarios)
     content = {
-        "name": "valet-slots",
+        "name": study_name("valet-slots", system, VALET_SYSTEM),
         "title": "Slot detection of the valet: kinds, angles, neighbours, walls, roads, sides, search paths",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact. No external slot.",
         "map": {"x": "angle", "y": "neighbours", "split": "end"},
     }
-    return Study(scenario, design, content, measures=MEASURES)
+    return Study(scenario, design, content, measures=plan_measures(system))
 
 
 def _planning_scenario(case: DetectedSlotCase) -> Scenario:

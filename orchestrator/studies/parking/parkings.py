@@ -6,37 +6,38 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.frame import in_frame
-from orchestrator.evaluation.verdict.measures import Instants, Measure
+from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
 from orchestrator.studies.parking.start_range import is_inside
+from orchestrator.studies.parking.studied_systems import SYSTEMS, shown_measures
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
 
-PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
+PARKED, FAILED = "parked", "failed"
 FALSE_DETECTION_DISTANCE = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
-SHOWN = Instants("controller.apa.mode", (int(Mode.PARKING_SPACE_APPEARS),))
-"""While the car stands to plan, and the slot it found is shown."""
 POSE, ODOMETRY = "shown.pose", "shown.odometry"
 CORNERS = ("shown.a", "shown.b")
-SIGNALS = {
+POSES = {
     **{f"{POSE}.{axis}": f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")},
     **{f"{ODOMETRY}.{axis}": f"vehicle.odometry.{axis}" for axis in ("x", "y", "heading")},
-    **{f"{CORNERS[0]}.{axis}": f"controller.apa.slot.a.{axis}" for axis in ("x", "y")},
-    **{f"{CORNERS[1]}.{axis}": f"controller.apa.corner_b.{axis}" for axis in ("x", "y")},
-    "shown.kind": "controller.apa.slot.kind",
 }
-MEASURES = {
-    "mode": Measure("last", "controller.apa.mode"),
-    "parking_time": Measure("last", "controller.apa.parking_time"),
-    **{name: Measure("first", signal, SHOWN) for name, signal in SIGNALS.items()},
-}
+SHOWN_COLUMNS = (*POSES, *(f"{corner}.{axis}" for corner in CORNERS for axis in ("x", "y")), "shown.kind")
+"""Of the first instant at which the car stands to plan, and the slot it found is shown."""
+
+
+def measures_of(system: int) -> dict[str, Measure]:
+    """Return what is kept of each run: how long it took, and the slot shown."""
+    took = {"parking_time": Measure("last", SYSTEMS[system].parking_time)}
+    return took | shown_measures(POSES, system)
+
+
 GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}
 PROJECT_LIMITS, PROJECT_LIMITS_BUT_MANOEUVRES = "project", "project, but for the manoeuvres"
 
@@ -45,7 +46,7 @@ class GridRun(NamedTuple):
     """One run of the grid."""
 
     case: GridCase
-    mode: int
+    outcome: str
     reason: str
     lateral: float
     """Final errors against the true slot [m, rad]."""
@@ -80,7 +81,12 @@ class GridRun(NamedTuple):
     @property
     def is_ended(self) -> bool:
         """Whether the run ended by itself: parked, or in Fail with its reason."""
-        return self.mode == PARKED or (self.mode == FAILED and self.reason != "none")
+        return self.outcome == PARKED or BEYOND in self.reason or self.is_given_up
+
+    @property
+    def is_given_up(self) -> bool:
+        """Whether the system gave up, and said why."""
+        return self.outcome == FAILED and self.reason != "none"
 
 
 def parkings(columns: Mapping[str, Any]) -> list[GridRun]:
@@ -94,7 +100,7 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
     gbt = parked and row[WITHIN.format(GBT[case.kind])]
     return GridRun(
         case,
-        int(row["mode"]),
+        row["outcome"],
         row["reason"],
         row["final.lateral_error"],
         row["final.heading_error"],
@@ -114,7 +120,7 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
 
 def _detection_columns(columns: Columns) -> Mapping[str, Array]:
     """Return how well the slot was found, of each run."""
-    names = ("lot", "number", *SIGNALS)
+    names = ("lot", "number", *SHOWN_COLUMNS)
     rows = zip(*(columns[name].tolist() for name in names), strict=True)
     found = [_how_found(dict(zip(names, row, strict=True))) for row in rows]
     return dict(zip(FOUND.columns, np.array(found).T, strict=True))

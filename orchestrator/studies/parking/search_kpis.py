@@ -18,21 +18,26 @@ from rich.table import Table as Printed
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import car_length
-from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
 from orchestrator.studies.parking.parkings import (
     FALSE_DETECTION_DISTANCE,
-    MEASURES,
     ODOMETRY,
     POSE,
-    SIGNALS,
+    SHOWN_COLUMNS,
     corner_errors,
+    measures_of,
     pose_of,
 )
-from orchestrator.studies.parking.parkings import SHOWN as WHILE_SHOWN
+from orchestrator.studies.parking.studied_systems import (
+    APA_SYSTEM,
+    PARKING_SYSTEM,
+    check_system,
+    driven_by,
+    study_name,
+)
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.studies.sweep.table import Table
@@ -77,23 +82,26 @@ def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: flo
     return GridCase(number, name, kind, side, extra, beside, heading, body, speed / 3.6, shortest + extra, lot)
 
 
-def study(lot: int = 0) -> Study:
-    """Return the study; ``lot``: which draw of cars, headings, noise and odometry errors."""
-    return study_of(cases(lot))
+def study(lot: int = 0, system: int = APA_SYSTEM) -> Study:
+    """Return the study; ``lot``: which draw of cars, headings, noise, odometry errors; ``system``: what drives it."""
+    return study_of(cases(lot), system)
 
 
-def study_of(chosen: list[GridCase]) -> Study:
-    """Return the study of some cases."""
-    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
+def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
+    """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
+    check_system("search-kpis", system, (APA_SYSTEM, PARKING_SYSTEM))
+    scenario, design = design_of(
+        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+    )
     content = {
-        "name": "search-kpis",
+        "name": study_name("search-kpis", system, APA_SYSTEM),
         "title": "Slot detection of the parking assist over kinds, sizes, speeds and distances",
         "description": "Gaps in which the vehicle fits, and others; detection, accuracy and parking time.",
         "map": {"x": "speed", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
+        "system": system,
     }
-    measures = {**MEASURES, HEADING: Measure("first", "controller.apa.slot.a.heading", WHILE_SHOWN)}
-    return Study(scenario, design, content, measures=measures, derived=SHOWN)
+    return Study(scenario, design, content, measures=measures_of(system), derived=SHOWN)
 
 
 def _labels(case: GridCase) -> dict[str, str | float]:
@@ -105,7 +113,7 @@ def _labels(case: GridCase) -> dict[str, str | float]:
 
 def _display_columns(columns: Columns) -> Mapping[str, Any]:
     """Return what was shown in each run, and how exact."""
-    names = ("lot", "number", *SIGNALS, HEADING)
+    names = [name for name in ("lot", "number", *SHOWN_COLUMNS, HEADING) if name in columns]
     rows = zip(*(columns[name].tolist() for name in names), strict=True)
     found = [_one_shown(dict(zip(names, row, strict=True))) for row in rows]
     words, *numbers = zip(*found, strict=True)
@@ -118,7 +126,8 @@ def _one_shown(row: Mapping[str, float]) -> tuple[str, float, float, float, floa
     if math.isnan(row["shown.kind"]):
         return (MISSED if case.extra >= 0.0 else REFUSED), math.nan, math.nan, math.nan, math.nan
     a, b = corner_errors(case, row)
-    turn = row[HEADING] - pose_of(row, ODOMETRY).heading + pose_of(row, POSE).heading
+    direction = math.atan2(row["shown.b.y"] - row["shown.a.y"], row["shown.b.x"] - row["shown.a.x"])
+    turn = row.get(HEADING, direction) - pose_of(row, ODOMETRY).heading + pose_of(row, POSE).heading
     right = float(int(row["shown.kind"]) == case.kind)
     word = FOUND if case.extra >= 0.0 and max(a, b) <= FALSE_DETECTION_DISTANCE else FALSE
     return word, a, b, math.remainder(turn, 2.0 * math.pi), right

@@ -16,7 +16,6 @@ from rich.table import Table as Printed
 
 from controller_fmu.common.external_slot import SlotKind
 from modelkit.car import car_length
-from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.obstacle_map import map_of
 from orchestrator.inputs.scenario.requirements import library_requirements
@@ -24,6 +23,14 @@ from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.imperfect import imperfect
+from orchestrator.studies.parking.studied_systems import (
+    PARKING_SYSTEM,
+    VALET_SYSTEM,
+    check_system,
+    driven_by,
+    plan_measures,
+    study_name,
+)
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
@@ -85,7 +92,8 @@ def scenario_of(case: RowCase) -> Scenario:
         vehicle=_vehicle(case, opening, middle, depth),
         controller={
             **car_parameters(car),
-            "system": 7,
+            "system": VALET_SYSTEM,
+            "search.active": False,
             "plan.margin": PLAN_MARGIN,
             **{f"slot.{name}": value for name, value in slot.items()},
         },
@@ -120,20 +128,23 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     return {**car_parameters(car), **scene, **start, **errors}
 
 
-def study(lot: int = 0, lots: int = 1) -> Study:
-    """Return all cases, ``lots`` times with other draws of start, noise and errors."""
+def study(lot: int = 0, lots: int = 1, system: int = VALET_SYSTEM) -> Study:
+    """Return all cases, ``lots`` times with other draws of start, noise and errors; ``system``: what drives them.
+
+    Raises ``BadInput`` if that cannot.
+    """
+    check_system("valet-rows", system, (VALET_SYSTEM, PARKING_SYSTEM))
     chosen = [case for number in range(lot, lot + lots) for case in cases(number)]
-    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
+    scenario, design = design_of(
+        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+    )
     content = {
-        "name": "valet-rows",
+        "name": study_name("valet-rows", system, VALET_SYSTEM),
         "title": "The valet in rows of slots: angles, tail or nose in, roads, starts, cars",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact; the slot is known.",
         "map": {"x": "angle", "y": "street", "split": "kind"},
     }
-    measures = {
-        "plans": Measure("last", "controller.valet.plans"),
-        "margin": Measure("last", "controller.valet.margin"),
-    }
+    measures = {name: measure for name, measure in plan_measures(system).items() if name in ("plans", "margin")}
     return Study(scenario, design, content, measures=measures)
 
 

@@ -5,19 +5,25 @@ from pathlib import Path
 
 from rich.table import Table as Printed
 
-from controller_fmu.apa.chart import Mode
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
 from orchestrator.studies.parking.parkings import (
-    FAILED,
     FOUND,
     GBT,
-    MEASURES,
     PROJECT_LIMITS,
     PROJECT_LIMITS_BUT_MANOEUVRES,
     GridRun,
+    measures_of,
     parkings,
+)
+from orchestrator.studies.parking.studied_systems import (
+    APA_SYSTEM,
+    PARKING_SYSTEM,
+    check_system,
+    driven_by,
+    required_of,
+    study_name,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -27,27 +33,31 @@ GBT_SETS = dict(zip(KINDS, ("gbt41630", "gbt41630-perpendicular"), strict=True))
 CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="project")
 
 
-def study(lot: int = 0) -> Study:
-    """Return the whole grid; ``lot``: which draw of speeds, noise and odometry errors."""
-    return study_of(cases(lot))
+def study(lot: int = 0, system: int = APA_SYSTEM) -> Study:
+    """Return the whole grid; ``lot``: which draw of speeds, noise and odometry errors; ``system``: what drives it."""
+    return study_of(cases(lot), system)
 
 
-def study_of(chosen: list[GridCase]) -> Study:
-    """Return the study of some cases."""
-    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
+def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
+    """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
+    check_system("apa-grid", system, (APA_SYSTEM, PARKING_SYSTEM))
+    scenario, design = design_of(
+        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+    )
     content = {
-        "name": "apa-grid",
+        "name": study_name("apa-grid", system, APA_SYSTEM),
         "title": "The parking assist over cars, slots, distances, headings and bodies",
         "description": "Parked: within GB/T 41630 (heading, lateral position, manoeuvres if parallel), no contact.",
         "map": {"x": "extra", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
+        "system": system,
     }
     within = {
         **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
-        PROJECT_LIMITS: [*library_requirements("apa"), CLEAR],
-        PROJECT_LIMITS_BUT_MANOEUVRES: [*library_requirements("apa-tight"), CLEAR],
+        PROJECT_LIMITS: [*required_of(library_requirements("apa"), system), CLEAR],
+        PROJECT_LIMITS_BUT_MANOEUVRES: [*required_of(library_requirements("apa-tight"), system), CLEAR],
     }
-    return Study(scenario, design, content, measures=MEASURES, within=within, derived=FOUND)
+    return Study(scenario, design, content, measures=measures_of(system), within=within, derived=FOUND)
 
 
 def report(table: Table, folder: Path) -> int:
@@ -69,7 +79,7 @@ def totals(found: list[GridRun]) -> dict[str, int]:
         "touched something": sum(item.nearest <= 0.0 for item in found),
         "parked within GB/T 41630": sum(item.is_gbt for item in found),
         "parked within the project limits": sum(item.is_within_limits for item in found),
-        "ended in Fail with a reason": sum(item.mode == FAILED and item.is_ended for item in found),
+        "gave up with a reason": sum(item.is_given_up for item in found),
         "ended in neither way": sum(not item.is_ended for item in found),
         "slot found": sum(item.kind != 0 for item in found),
         "both corners within 10 cm": sum(max(item.corner_a, item.corner_b) <= 0.1 for item in found),
@@ -84,7 +94,7 @@ def line(item: GridRun) -> str:
     return (
         f"{case.number:4d} {case.car} {KINDS[case.kind]} {SIDES[case.side]} +{case.extra:.1f} m, "
         f"{case.beside:.1f} m beside, {math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
-        f"{'inside' if item.inside else 'outside'}: {Mode(item.mode).name.lower()} ({item.reason}), "
+        f"{'inside' if item.inside else 'outside'}: {item.outcome} ({item.reason}), "
         f"{100.0 * item.lateral:+.1f} cm {math.degrees(item.heading):+.2f} deg, {item.manoeuvres} manoeuvres, "
         f"{item.parking_time:.0f} s, {100.0 * item.nearest:.0f} cm clear, "
         f"corners {100.0 * item.corner_a:.0f} and {100.0 * item.corner_b:.0f} cm: {verdict}"

@@ -27,6 +27,7 @@ from orchestrator.studies.parking.parking_world.outcome import (
 )
 from orchestrator.studies.parking.parking_world.scene import parameters
 from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.studied_systems import APA_SYSTEM, SYSTEMS, check_system, study_name
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
@@ -38,10 +39,6 @@ from orchestrator.studies.sweep.study.space import Seeds, Space
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
 
-APA_SYSTEM = 5
-VALET_SYSTEM = 7
-OF_SYSTEM = {VALET_SYSTEM: {"search.active": True, "plan.margin": 0.12}}
-"""Parameters of a system that searches only where its parameter is set."""
 MOST_ROWS = 20
 KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
 """GB/T 41630, between tyres and kerb [m]."""
@@ -49,12 +46,13 @@ KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
 
 def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     """Return the study; ``system``: the number of ``controller.system`` that parks, on the same rows."""
+    check_system("parking-world", system, tuple(SYSTEMS))
     space = Space(FACTORS, _stack)
     shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
     seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
     shared = scenario(system)
     content = {
-        "name": "parking-world" if system == APA_SYSTEM else f"parking-world-{system}",
+        "name": study_name("parking-world", system, APA_SYSTEM),
         "title": "Parking beside ordinary roads and in car parks",
         "description": "Parked: within GB/T 41630 of a slot by ISO 16787, no contact.",
         "map": {"x": "extra", "y": "cars_a", "split": "kind"},
@@ -72,7 +70,7 @@ def scenario(system: int) -> Scenario:
     base = world.scenario()
     update = {
         "name": "parking-world",
-        "controller": {"system": system, **OF_SYSTEM.get(system, {})},
+        "controller": {"system": system, **SYSTEMS[system].searching},
         "requirements": [*library_requirements("no-contact")],
     }
     return base.model_copy(update=update)

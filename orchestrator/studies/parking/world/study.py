@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS, gbt_limits
 from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.studied_systems import APA_SYSTEM, SYSTEMS, check_system, study_name
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world.ends import (
     CONTACT,
@@ -45,16 +47,13 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-APA_SYSTEM = 5
-"""The number of ``controller.system`` of the parking assist."""
-
-
 def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYSTEM) -> Study:
     """Return the world; ``mild``: 1 for half the ranges; ``system``: number of ``controller.system``, same rows."""
+    check_system("apa-world", system, tuple(SYSTEMS))
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
-    content = {
+    content: dict[str, Any] = {
         "name": "apa-world-mild" if mild else "apa-world",
         "title": "The parking assist with all disturbances at once",
         "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), no contact.",
@@ -67,7 +66,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYST
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     if system != APA_SYSTEM:
-        content |= {"name": f"{content['name']}-{system}", "system": system}
+        content |= {"name": study_name(content["name"], system, APA_SYSTEM), "system": system}
         return Study(shared, design, content, seeded, MEASURES_OF_ANY, within, FOUND_BY_ANY, world)
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
@@ -78,7 +77,7 @@ def scenario(system: int = APA_SYSTEM) -> Scenario:
         name="apa-world",
         stop_time=STOP_TIME,
         vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
-        controller={"system": system},
+        controller={"system": system, **SYSTEMS[system].searching},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)
             for number in range(1, SENSOR_COUNT + 1)

@@ -17,6 +17,7 @@ from controller_fmu.parking.following.path_tracking import (
     standstill_wheel_angle,
     track_path,
 )
+from controller_fmu.parking.following.rolling_steering import standstill_before
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.silent_sensor import silent_sensors
@@ -215,8 +216,12 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
     straight = abs(wheel) <= params.threshold.steering_angle_reached
-    rolls_after = progress.upcoming.standstill.after if memory.state == ParkingState.STEERING else 0.0
-    tolerance = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolls_after)
+    rolling_time = 0.0
+    if memory.state == ParkingState.STEERING:
+        rolling_time = standstill_before(
+            progress.path, progress.segment, FollowingContext(params.car, params.drive)
+        ).after
+    tolerance = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolling_time)
     blocked = memory.verdict.is_blocked
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)

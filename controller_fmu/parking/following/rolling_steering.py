@@ -15,17 +15,15 @@ On a transition the steering turns by dphi per metre, which limits the speed. Wh
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.following.params import FollowingContext
-from controller_fmu.parking.planning.clearance_margin import CLEARANCE_FRACTION, MARGIN_FRACTION, SAME_CURVATURE
-from controller_fmu.parking.planning.curvature_transition import transition_length, transition_state
+from controller_fmu.parking.following.params import RATE_FRACTION, START_ACCELERATION, FollowingContext
+from controller_fmu.parking.planning.clearance_margin import CLEARANCE_FRACTION, MARGIN_FRACTION
+from controller_fmu.parking.planning.curvature_transition import SAME_CURVATURE, transition_length, transition_state
 from controller_fmu.parking.planning.gear_segments import GearSegment, distance_before, gear_segment
-from controller_fmu.parking.planning.planner import PlannedPath
+from controller_fmu.parking.planning.planner import PathSegment, PlannedPath
 from modelkit.maths import sign
 
 MIN_ROLLING_SPEED = 0.12
 """Slower [m/s] than this it is quicker to stop and turn the wheel at standstill."""
-RATE_FRACTION = 0.9
-"""Of the steering wheel's rate that a transition asks for; the rest is for tracking."""
 ROOMY_FACTOR = 1.5
 """A transition takes the vehicle off by at most ``drive.rolling_offset`` times this, where the planner finds room."""
 JUST_BEHIND = 1e-6
@@ -40,8 +38,6 @@ MIN_MARGIN = 0.05
 """Where the plan leaves less clearance [m] the steering wheel turns at rest."""
 SETTLING_TIME = 0.3
 """So long [s] before its last standstill the car tracks no more: the steering wheel is at rest when it is straight."""
-START_ACCELERATION = 1.0
-"""Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
 
 
 class CurvatureJoint(NamedTuple):
@@ -100,10 +96,15 @@ def _transition_at(
     """Return the joint at the end of ``segment``, ``at`` [m] from the begin of the stretch."""
     if segment >= whole.last:
         return CurvatureJoint()
+    if is_transition(path, segment + 1):
+        length = min(abs(path.segments[segment].distance), abs(path.segments[segment + 1].distance))
+        return CurvatureJoint(length, path.segments[segment + 1].curvature - path.segments[segment].curvature)
     offset = _offset_before(path, segment + 1, context)
     if offset <= 0.0:
         return CurvatureJoint()
-    longest = 2.0 * min(at, whole.length - at)
+    longest = 2.0 * min(
+        _distance_to_transition(path, whole, segment, -1), _distance_to_transition(path, whole, segment + 1, 1)
+    )
     k0 = path.segments[segment].curvature
     k1 = path.segments[segment + 1].curvature
     if abs(k1 - k0) < SAME_CURVATURE:
@@ -116,6 +117,24 @@ def _transition_at(
         if steering_speed_limit(swing / transition, context) >= MIN_ROLLING_SPEED
         else CurvatureJoint()
     )
+
+
+def _distance_to_transition(path: PlannedPath, whole: GearSegment, segment: int, turn: int) -> float:
+    """Return the distance [m] from a segment on (``turn`` 1), or back (-1), to a transition or the gear's end."""
+    distance = 0.0
+    number = segment
+    while whole.first <= number <= whole.last:
+        if path.segments[number].speed > 0.0:
+            return distance
+        distance += abs(path.segments[number].distance)
+        number += turn
+    return distance
+
+
+def is_transition(path: PlannedPath, segment: int) -> bool:
+    """Return whether the path has a transition about the begin of ``segment``; of their number: at its end."""
+    before = path.segments[segment - 1].speed if segment > 0 else 0.0
+    return before > 0.0 or (segment < path.used and path.segments[segment].speed > 0.0)
 
 
 def steering_speed_limit(turning: float, context: FollowingContext) -> float:
@@ -159,6 +178,7 @@ def steering_rate_at(path: PlannedPath, whole: GearSegment, place: float, contex
         share = 1.0 if on >= joint.transition else 0.0
         if 0.0 < on < joint.transition:
             share = on / joint.transition
+        if 0.0 < on < joint.transition and not is_transition(path, number + 1):
             slope += joint.jump / joint.transition
         curvature += share * (path.segments[number + 1].curvature - path.segments[number].curvature)
     bent = context.car.wheelbase * curvature
@@ -171,22 +191,27 @@ def upcoming_stop(path: PlannedPath, segment: int, left: float, context: Followi
     here = distance_before(path, whole, segment + 1) - left
     speed = steering_speed_limit(steering_rate_at(path, whole, here, context), context)
     at = 0.0
-    for number in range(whole.first, whole.last):
+    for number in range(whole.first, whole.last + 1):
+        limit = path.segments[number].speed
+        if number >= segment and limit > 0.0:
+            speed = min(speed, math.sqrt(limit * limit + 2.0 * context.drive.deceleration * max(at - here, 0.0)))
         at += abs(path.segments[number].distance)
         transition = _transition_at(path, whole, number, at, context).transition
-        if number >= segment and transition <= 0.0:
-            return UpcomingStop(at - here, speed, dry_steering_count(path, number + 1, context))
+        if segment <= number < whole.last and transition <= 0.0:
+            return UpcomingStop(at - here, speed, standstill_before(path, number + 1, context))
+        if number == whole.last or is_transition(path, number + 1):
+            transition = 0.0
         for share in (-0.5, 0.0, 0.5):
             place = at + share * transition
-            if place > here:
+            if transition > 0.0 and place > here:
                 there = steering_speed_limit(steering_rate_at(path, whole, place + JUST_BEHIND, context), context)
                 speed = min(speed, math.sqrt(there * there + 2.0 * context.drive.deceleration * (place - here)))
-    standstill = dry_steering_count(path, whole.last + 1, context)
+    standstill = standstill_before(path, whole.last + 1, context)
     return UpcomingStop(whole.length + standstill.overrun - here, speed, standstill)
 
 
-def dry_steering_count(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
-    """Return the standstill before ``segment``; of the number of segments: that at the end."""
+def standstill_before(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
+    """Return the standstill before ``segment``; of their number: that at the end."""
     before = reference_at(path, segment - 1, 0.0, context).curvature if segment > 0 else 0.0
     next_curvature = (
         reference_at(path, segment, abs(path.segments[segment].distance), context).curvature
@@ -196,6 +221,8 @@ def dry_steering_count(path: PlannedPath, segment: int, context: FollowingContex
     offset = _overrun_before(path, segment, context)
     ends = segment >= path.used
     settled = SETTLING_TIME if ends else 0.0
+    if is_transition(path, segment):
+        return _standstill_in_transition(path, segment, before, next_curvature, context)
     if offset <= 0.0 or path.margin < MIN_MARGIN:
         return StandstillSteering(next_curvature=next_curvature)
     if abs(next_curvature - before) < SAME_CURVATURE:
@@ -215,6 +242,21 @@ def dry_steering_count(path: PlannedPath, segment: int, context: FollowingContex
         0.0 if same_gear or segment == 0 else early.overrun + late.overrun,
         next_curvature,
     )
+
+
+def _standstill_in_transition(
+    path: PlannedPath, segment: int, before: float, next_curvature: float, context: FollowingContext
+) -> StandstillSteering:
+    """Return the standstill within a transition: the wheel turns for half of an arc's time before and behind it."""
+    base = context.car.wheelbase
+    rate = context.car.steering.rate_limit / context.car.steering.ratio
+    most = abs(math.atan(base * next_curvature) - math.atan(base * before)) / rate
+    early = path.segments[segment - 1] if segment > 0 else PathSegment()
+    late = path.segments[segment] if segment < path.used else PathSegment()
+    slowing = 0.5 * math.sqrt(2.0 * abs(early.distance) / context.drive.deceleration) if early.speed > 0.0 else 0.0
+    starting = 0.5 * math.sqrt(2.0 * abs(late.distance) / START_ACCELERATION) if late.speed > 0.0 else 0.0
+    settled = 0.0 if segment < path.used else SETTLING_TIME
+    return StandstillSteering(max(min(slowing, most), settled), min(starting, most), next_curvature=next_curvature)
 
 
 class SteeringWhileMoving(NamedTuple):
@@ -239,8 +281,8 @@ def _steering_while_moving(
     steepest = rate * (1.0 + base * base * max(near * near, far * far)) / base
     cube = 3.0 * offset * abs(far - near) / (steepest * acceleration)
     time = min(0.5 * abs(swing) / rate, math.exp(math.log(cube) / 3.0))
-    half_way = math.tan(angle + sign(swing) * 0.5 * rate * time) / base
-    return SteeringWhileMoving(time, abs(half_way - near) * acceleration * time * time / (3.0 * abs(far - near)))
+    middle = math.tan(angle + sign(swing) * 0.5 * rate * time) / base
+    return SteeringWhileMoving(time, abs(middle - near) * acceleration * time * time / (3.0 * abs(far - near)))
 
 
 def steers_for_next(ahead: UpcomingStop, context: FollowingContext) -> bool:

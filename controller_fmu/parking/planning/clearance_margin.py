@@ -10,6 +10,7 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE, clearance, free_distance
 from controller_fmu.parking.planning.curvature_transition import (
+    SAME_CURVATURE,
     lateral_offset_after,
     transition_length,
     transition_state,
@@ -46,8 +47,6 @@ MARGIN_LEFT = 0.75
 """Share of the margin that is left on a transition, for what tracking and odometry are off."""
 TRACKING_RATE = 1.3
 """How fast [1/m] tracking takes back what a transition leaves: as e^(-RATE s) (1 + RATE s) over the distance s."""
-SAME_CURVATURE = 1e-6
-"""Curvatures nearer than this [1/m] are one."""
 EXAMINED_AFTER = 2.0
 """Distance [m] behind a transition over which clearances are examined."""
 
@@ -57,7 +56,9 @@ def measure_clearance(work: PlanningWork, request: PlanningRequest, problem: Sea
     segment = work.counts[MEASURED_SEGMENTS]
     problem = problem._replace(margin=work.values[BEST_PATH_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
-    if segment == 0:
+    if work.best_speed[segment] > 0.0 or (segment > 0 and work.best_speed[segment - 1] > 0.0):
+        set_clearance(work, segment, 0.0)
+    elif segment == 0:
         set_clearance(work, segment, _clearance_about(work, start, segment, problem))
     elif work.best_length[segment - 1] * work.best_length[segment] < 0.0:
         set_clearance(work, segment, _overrun(work, start, segment, problem))
@@ -164,10 +165,12 @@ def _transition(work: PlanningWork, segment: int) -> float:
 
 
 def _gear_distance(work: PlanningWork, segment: int, turn: int) -> float:
-    """Return the distance [m] driven in a segment's gear from its begin on (``turn`` 1), or before it (-1)."""
+    """Return the distance [m] in a gear from a segment's begin on (``turn`` 1) or before (-1), up to a transition."""
     distance = 0.0
     number = segment if turn > 0 else segment - 1
     while 0 <= number < work.counts[BEST_SEGMENT_COUNT] and work.best_length[number] * work.best_length[segment] > 0.0:
+        if work.best_speed[number] > 0.0:
+            return distance
         distance += abs(work.best_length[number])
         number += turn
     return distance

@@ -7,6 +7,9 @@ off its direction by dk r / 8, and its nose swings out by so much times its leng
 import math
 from typing import NamedTuple
 
+SAME_CURVATURE = 1e-6
+"""Curvatures nearer than this [1/m] are one."""
+
 
 class TransitionState(NamedTuple):
     """What a car on a transition has more than the path."""

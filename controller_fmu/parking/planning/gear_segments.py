@@ -42,6 +42,6 @@ def distance_before(path: PlannedPath, whole: GearSegment, segment: int) -> floa
 def without_short_end(path: PlannedPath) -> PlannedPath:
     """Return the path without last segments that are not worth turning the wheel for."""
     used = path.used
-    while used > 1 and abs(path.segments[used - 1].distance) < MIN_LENGTH:
+    while used > 1 and abs(path.segments[used - 1].distance) < MIN_LENGTH and path.segments[used - 1].speed == 0.0:
         used -= 1
     return path._replace(used=used)

@@ -29,6 +29,7 @@ from controller_fmu.parking.planning.search_schedule import (
     search_region,
 )
 from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, path_cost, smooth
+from controller_fmu.parking.planning.steering_transitions import begin_transitions, try_transitions
 from controller_fmu.parking.planning.work import (
     BEST_PATH_COST,
     BEST_PATH_MARGIN,
@@ -42,7 +43,7 @@ from controller_fmu.parking.planning.work import (
     MEASURED_SEGMENTS,
     MIN_END_CLEARANCE,
     PHASE,
-    REQUESTED,
+    REQUEST_SIZE,
     SEGMENT_COUNT,
     STAGE,
     STATUS,
@@ -64,8 +65,9 @@ class PlanningPhase(IntEnum):
     BEGIN = 1
     SEARCH = 2
     SMOOTH = 3
-    MEASURE_CLEARANCE = 4
-    FINISHED = 5
+    ADD_TRANSITIONS = 4
+    MEASURE_CLEARANCE = 5
+    FINISHED = 6
 
 
 class PlanningStatus(IntEnum):
@@ -94,6 +96,8 @@ class PathSegment(NamedTuple):
     clearance: float = 0.0
     """At the path's begin: what is free beyond the margin [m]. Where the gear changes: how far the segment before may
     go on. Else: how far beside the path steering while rolling may take the car."""
+    speed: float = 0.0
+    """Largest speed [m/s] on a transition, where the wheel turns; 0: it is not one."""
 
 
 class PlannedPath(NamedTuple):
@@ -135,7 +139,7 @@ def search_status(work: PlanningWork) -> int:
 def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> bool:
     """Return whether the work arrays holds the search for this request."""
     numbers = _numbers(request)
-    for which in range(REQUESTED):
+    for which in range(REQUEST_SIZE):
         if work.requested[which] != numbers[which]:
             return False
     if work.counts[VERTEX_COUNT] != obstacles.used:
@@ -152,7 +156,7 @@ def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: Planning
 def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> None:
     """Forget all, and store the request."""
     numbers = _numbers(request)
-    for which in range(REQUESTED):
+    for which in range(REQUEST_SIZE):
         set_requested(work, which, numbers[which])
     set_count(work, VERTEX_COUNT, obstacles.used)
     for number in range(obstacles.used):
@@ -173,19 +177,24 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     if phase == PlanningPhase.LAY_OUT:
         _lay_out(work, request)
     elif phase == PlanningPhase.BEGIN:
-        _begin_stage(work, problem)
+        _begin_stage(work, request, problem)
     elif phase == PlanningPhase.SEARCH:
         status = expand_next(work, problem)
         if status == FOUND:
             begin_smoothing(work, problem)
             set_count(work, PHASE, PlanningPhase.SMOOTH)
         elif status != SEARCHING:
-            _next_stage(work)
+            _next_stage(work, request)
     elif phase == PlanningPhase.SMOOTH:
         more = smooth(work, problem)
         if not more:
             _keep_if_better(work, problem)
-            _next_stage(work)
+            _next_stage(work, request)
+    elif phase == PlanningPhase.ADD_TRANSITIONS:
+        more = try_transitions(work, request, problem, MAX_SEGMENTS)
+        if not more:
+            set_count(work, MEASURED_SEGMENTS, 0)
+            set_count(work, PHASE, PlanningPhase.MEASURE_CLEARANCE)
     elif phase == PlanningPhase.MEASURE_CLEARANCE:
         more = measure_clearance(work, request, problem)
         if not more:
@@ -205,15 +214,16 @@ def planned_path(work: PlanningWork) -> PlannedPath:
 
 def _segment(work: PlanningWork, number: int) -> PathSegment:
     """Return a segment of the path that was found."""
-    return PathSegment(work.best_length[number], work.best_curvature[number], work.best_clearance[number])
+    return PathSegment(
+        work.best_length[number], work.best_curvature[number], work.best_clearance[number], work.best_speed[number]
+    )
 
 
-def _numbers(
-    request: PlanningRequest,
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
+def _numbers(request: PlanningRequest) -> tuple[float, ...]:
     start = request.start
     goal = request.goal
     car = request.car
+    dynamics = request.dynamics
     return (
         start.x,
         start.y,
@@ -226,6 +236,12 @@ def _numbers(
         car.half_width,
         car.max_curvature,
         request.margin,
+        dynamics.wheelbase,
+        dynamics.rate,
+        dynamics.curvature,
+        dynamics.speed,
+        dynamics.acceleration,
+        dynamics.deceleration,
         float(request.max_cusps),
     )
 
@@ -264,12 +280,12 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
         set_count(work, PHASE, PlanningPhase.BEGIN)
 
 
-def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
+def _begin_stage(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> None:
     """Begin the search of the stage in hand, unless not even a point could get through."""
     mark_blocked_cells(work, work.counts[EDGE_COUNT], problem)
     compute_cost_to_go(work, problem)
     if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE:
-        _next_stage(work)
+        _next_stage(work, request)
         return
     begin_search(work, problem)
     set_count(work, PHASE, PlanningPhase.SEARCH)
@@ -307,14 +323,15 @@ def cusps_of(work: PlanningWork) -> int:
     return found
 
 
-def _next_stage(work: PlanningWork) -> None:
+def _next_stage(work: PlanningWork, request: PlanningRequest) -> None:
     """Go on to the next search, or end."""
     stage = work.counts[STAGE] + 1
     best = work.counts[BEST_SEGMENT_COUNT] > 0
     last = stage >= len(SEARCH_SCHEDULE)
     if best and (last or not SEARCH_SCHEDULE[stage].always):
         set_count(work, MEASURED_SEGMENTS, 0)
-        set_count(work, PHASE, PlanningPhase.MEASURE_CLEARANCE)
+        has_transitions = begin_transitions(work, request, MAX_SEGMENTS)
+        set_count(work, PHASE, PlanningPhase.ADD_TRANSITIONS if has_transitions else PlanningPhase.MEASURE_CLEARANCE)
     elif last:
         _finish(work, PlanningStatus.NO_PATH)
     else:

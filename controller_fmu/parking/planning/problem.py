@@ -11,6 +11,19 @@ STEERING_COST = 0.5
 """Price [m] of turning the wheel from straight to full lock."""
 
 
+class DrivingDynamics(NamedTuple):
+    """How the vehicle drives a path; with a rate of 0 the wheel turns at standstill only."""
+
+    wheelbase: float = 0.0
+    rate: float = 0.0
+    """Of the front wheels [rad/s]."""
+    curvature: float = 0.0
+    """Largest curvature [1/m] that leaves some of the lock for tracking."""
+    speed: float = 0.0
+    acceleration: float = 0.0
+    deceleration: float = 0.0
+
+
 class PlanningRequest(NamedTuple):
     """Request for a path from one pose to another."""
 
@@ -21,6 +34,7 @@ class PlanningRequest(NamedTuple):
     """Desired clearance [m]; where it cannot be kept, less is tried."""
     max_cusps: int = 0
     """Changes of direction of a path that is taken."""
+    dynamics: DrivingDynamics = DrivingDynamics()
 
 
 class SearchRegion(NamedTuple):

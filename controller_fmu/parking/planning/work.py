@@ -18,8 +18,8 @@ BUCKETS = 2048
 CROWDING_CELLS = 8192
 WORDS = 128
 SEGMENTS = 256
-REQUESTED = 12
-MAX_CUSPS = REQUESTED - 1
+REQUEST_SIZE = 18
+MAX_CUSPS = REQUEST_SIZE - 1
 """Place of that number among those of the request."""
 NONE = -1
 
@@ -66,16 +66,21 @@ class PlanningWork(NamedTuple):
     word_e: Annotated[Floats, Column("d", WORDS, "m", "distance of its fifth segment")]
     segment_length: Annotated[Floats, Column("d", SEGMENTS, "m", "distance of a segment of the path")]
     segment_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
+    segment_speed: Annotated[Floats, Column("d", SEGMENTS, "m/s", "its largest speed on a transition: see PathSegment")]
     segment_x: Annotated[Floats, Column("d", SEGMENTS, "m", "x where it begins")]
     segment_y: Annotated[Floats, Column("d", SEGMENTS, "m", "y where it begins")]
     segment_heading: Annotated[Floats, Column("d", SEGMENTS, "rad", "heading where it begins")]
     best_length: Annotated[Floats, Column("d", SEGMENTS, "m", "distance of a segment of the best path yet")]
     best_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
-    best_clearance: Annotated[Floats, Column("d", SEGMENTS, "m", "room about its begin: see Piece")]
+    best_speed: Annotated[Floats, Column("d", SEGMENTS, "m/s", "its largest speed: see PathSegment")]
+    best_clearance: Annotated[Floats, Column("d", SEGMENTS, "m", "room about its begin: see PathSegment")]
+    transition_fraction: Annotated[Floats, Column("d", SEGMENTS, "1", "fraction requested of the transition before it")]
+    arc_length: Annotated[Floats, Column("d", SEGMENTS, "m", "length of a segment between its transitions")]
+    arc_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature there")]
     corner_x: Annotated[Floats, Column("d", VERTICES, "m", "x of a corner of the requested scene")]
     corner_y: Annotated[Floats, Column("d", VERTICES, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", VERTICES, "1", "its polygon")]
-    requested: Annotated[Floats, Column("d", REQUESTED, "1", "the numbers of the request")]
+    requested: Annotated[Floats, Column("d", REQUEST_SIZE, "1", "the numbers of the request")]
     counts: Annotated[Ints, Column("i", 32, "1", "counts and places, see below")]
     values: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]
 
@@ -109,6 +114,10 @@ VERTEX_COUNT = 21
 """Vertices of the obstacle map in use."""
 MEASURED_SEGMENTS = 20
 """Segments of the path kept about whose begin the room is known."""
+TRANSITION_TRIED = 22
+"""Number of the transition that is tried."""
+ARC_COUNT = 23
+"""Arcs of a transition on one side of a stop."""
 
 BEST_COST = 0
 BEST_LENGTHS = 1
@@ -227,7 +236,33 @@ def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float
     """Set a segment of the best path yet; of its room nothing is known."""
     work.best_length[segment] = distance
     work.best_curvature[segment] = k
+    work.best_speed[segment] = 0.0
     set_clearance(work, segment, 0.0)
+
+
+def set_best_speed(work: PlanningWork, segment: int, speed: float) -> None:
+    """Set the largest speed of a segment of the best path yet."""
+    work.best_speed[segment] = speed
+
+
+def set_segment_speed(work: PlanningWork, segment: int, speed: float) -> None:
+    """Set the largest speed of a segment of the path."""
+    work.segment_speed[segment] = speed
+
+
+def set_transition_fraction(work: PlanningWork, joint: int, fraction: float) -> None:
+    """Set the fraction of the transition about the begin of a segment."""
+    work.transition_fraction[joint] = fraction
+
+
+def set_arc_length(work: PlanningWork, segment: int, length: float) -> None:
+    """Set the length of a segment between its transitions."""
+    work.arc_length[segment] = length
+
+
+def set_arc_curvature(work: PlanningWork, segment: int, k: float) -> None:
+    """Set the curvature of a segment between its transitions."""
+    work.arc_curvature[segment] = k
 
 
 def set_clearance(work: PlanningWork, segment: int, clearance: float) -> None:

@@ -174,8 +174,9 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     if not is_echo or measured >= MAX_MONITORED_RANGE:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
     planned = range_in_map(sensor, memory.plan.obstacles, sensors.max_range)
-    expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
-    unexplained = measured < expected.distance - params.monitor.unexplained
+    tolerance = params.monitor.unexplained
+    expected = expected_range(perception.local_map.landmarks, sensor, planned, measured - tolerance, params.mapping)
+    unexplained = measured < expected.distance - tolerance
     towards = direction_of(expected, sensor)
     is_side = expected.origin == EchoOrigin.INTERIOR
     return with_expectation(track, expected.distance, towards.x, towards.y, is_side, unexplained)

@@ -20,7 +20,7 @@ from controller_fmu.parking.following.path_tracking import (
 from controller_fmu.parking.following.rolling_steering import standstill_before
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
-from controller_fmu.parking.measurement.silent_sensor import silent_sensors
+from controller_fmu.parking.measurement.silent_sensor import has_blind_side
 from controller_fmu.parking.monitor.collision_monitor import (
     EchoObstacle,
     MonitorVerdict,
@@ -70,8 +70,6 @@ from modelkit.vocabulary import Pose
 
 REPLAN_TIME = 0.3
 """Blocked by the map the vehicle plans again after this time [s]: seven measurement cycles at standstill."""
-MAX_SILENT_SENSORS = 2
-"""With more the surroundings are unknown on one side at least: a bumper has four sensors, a flank two."""
 MAX_RESUME_DISTANCE = 12.0
 """A slot is shown again up to this distance [m]: odometry drifts by 2 % of it, a quarter of a metre."""
 DRIVEN_ON = 0.3
@@ -131,7 +129,7 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     reason = memory.reason
     if reason == Reason.NONE:
         reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limit)
-    if reason == Reason.NONE and silent_sensors(memory.perception.local_map.missed) > MAX_SILENT_SENSORS:
+    if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
 

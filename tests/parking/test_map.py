@@ -17,10 +17,12 @@ from controller_fmu.parking.map.landmark import (
     offset_variance,
     segment_point,
 )
-from controller_fmu.parking.map.local_map import LandmarkMap, update_map
+from controller_fmu.parking.map.local_map import LandmarkMap, expected_range, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
-from controller_fmu.parking.measurement.silent_sensor import silent_sensors
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange
+from controller_fmu.parking.measurement.sensor import sensor_pose
+from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES
 from modelkit.geometry import Box
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -143,7 +145,7 @@ def test_a_wall_that_is_gone_is_forgotten() -> None:
         readings = (CAR.ultrasonic.max_range if number % 3 else 4.5,) * 12
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, PARAMS)
     assert sum(length_of(item) for item in sides(local_map) if abs(item.y - true.y) < 3.0) < 3.0
-    assert silent_sensors(local_map.missed) == 0
+    assert local_map.missed.counts.count(MISSED_ECHOES) == 0
 
 
 def test_silent_sensors_forget_no_wall() -> None:
@@ -153,7 +155,7 @@ def test_silent_sensors_forget_no_wall() -> None:
         pose = Pose(true.x - 0.1 * number, true.y, true.heading)
         local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, pose, CAR.ultrasonic, PARAMS)
     assert sum(length_of(item) for item in sides(local_map)) > before - 1.0
-    assert silent_sensors(local_map.missed) >= 2, "those of the flank that passes the wall"
+    assert local_map.missed.counts.count(MISSED_ECHOES) >= 2, "those of the flank that passes the wall"
 
 
 def test_what_is_in_the_blind_zone_is_kept() -> None:
@@ -179,3 +181,17 @@ def test_a_narrow_body_that_came_between_two_cones_is_kept() -> None:
         for _ in range(20):
             local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, away, CAR.ultrasonic, PARAMS)
         assert local_map.landmarks[0].type == LandmarkType.NONE, "from afar it must be heard"
+
+
+def test_a_side_does_not_go_on_where_the_sensor_measures_through() -> None:
+    """A pedestrian's surface behind the car, 0.5 m long, with open ends; the sensor beside it measures the kerb."""
+    mount = CAR.ultrasonic.mounts[7]
+    sensor = sensor_pose(mount, CAR.ultrasonic.half_angle, Pose())
+    x, y = sensor.x + 1.2 * sensor.axis_x, sensor.y + 1.2 * sensor.axis_y
+    across = math.atan2(sensor.axis_y, sensor.axis_x) + math.pi / 2
+    person = Landmark(LandmarkType.SEGMENT, x, y, across, start=-1.5, end=-1.0, confirmations=9)
+    kerb = PredictedRange(2.0, EchoOrigin.INTERIOR, sensor.x + 2.0 * sensor.axis_x, sensor.y + 2.0 * sensor.axis_y)
+    landmarks = (person, *(Landmark(),) * (LANDMARKS - 1))
+    unknown = expected_range(landmarks, sensor, kerb, 0.0, PARAMS)
+    assert unknown.distance == pytest.approx(1.2, abs=0.1), "it may go on before the kerb"
+    assert expected_range(landmarks, sensor, kerb, 1.8, PARAMS) == kerb

@@ -19,7 +19,6 @@ from controller_fmu.parking.measurement.silent_sensor import (
     MissedEchoes,
     count_missed_echo,
     is_credible_miss,
-    silent_sensors,
 )
 from modelkit.car import Car, SensorMount
 from modelkit.geometry import NO_HIT, Point, cone_line
@@ -67,20 +66,20 @@ def test_origin_of_an_echo() -> None:
 
 def test_meaning_of_a_reading() -> None:
     sensors = Car().ultrasonic
-    readings = (sensors.max_range, sensors.min_range, 1.0, math.nan, -1.0)
+    readings = (sensors.max_range, sensors.min_range, 1.0, math.nan, -1.0, 0.0)
     expected = (ReadingStatus.NO_ECHO, ReadingStatus.BLIND_ZONE, ReadingStatus.ECHO, ReadingStatus.INVALID)
-    assert tuple(reading_status(reading, sensors) for reading in readings) == (*expected, ReadingStatus.INVALID)
+    assert tuple(reading_status(reading, sensors) for reading in readings) == (*expected, *[ReadingStatus.INVALID] * 2)
 
 
 def test_a_sensor_is_silent_after_enough_missed_echoes() -> None:
     missed = MissedEchoes()
     for number in range(MISSED_ECHOES):
-        assert silent_sensors(missed) == 0
+        assert missed.counts.count(MISSED_ECHOES) == 0
         assert is_credible_miss(missed, 3) == (number < MISSED_ECHOES // 2)
         missed = count_missed_echo(missed, 3, ReadingStatus.NO_ECHO, True)
         missed = count_missed_echo(missed, 4, ReadingStatus.NO_ECHO, False)
-    assert silent_sensors(missed) == 1
-    assert silent_sensors(count_missed_echo(missed, 3, ReadingStatus.ECHO, False)) == 0
+    assert missed.counts.count(MISSED_ECHOES) == 1
+    assert count_missed_echo(missed, 3, ReadingStatus.ECHO, False).counts.count(MISSED_ECHOES) == 0
 
 
 def test_readings_are_new_once_a_cycle() -> None:

@@ -23,10 +23,7 @@ OTHERWISE = frozenset(
     {
         "apa-over-speed",
         "apa-parallel-deep",
-        "apa-pedestrian",
         "apa-perpendicular-walls",
-        "apa-resume",
-        "apa-sensor-loss",
         "apa-slot-too-short",
         "cicap-pillar",
         "valet-search-45",

@@ -33,9 +33,10 @@ def vehicle_outline(car: Car, curvature_fraction: float) -> VehicleOutline:
 def pose_along_arc(pose: Pose, distance: float, curvature: float) -> Pose:
     """Return the pose after ``distance`` [m] (reverse negative) along an arc of ``curvature`` [1/m], 0: a line."""
     half_turn = 0.5 * distance * curvature
+    size = abs(half_turn)
     chord = distance
-    if abs(half_turn) > STRAIGHT_TURN:
-        chord = distance * math.sin(half_turn) / half_turn
+    if size > STRAIGHT_TURN:
+        chord = distance * math.sin(size) / size
     heading = pose.heading + half_turn
     return Pose(pose.x + chord * math.cos(heading), pose.y + chord * math.sin(heading), heading + half_turn)
 

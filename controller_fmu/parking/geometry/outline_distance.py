@@ -2,6 +2,9 @@
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
 
+MIN_EDGE_SQUARE = 1e-12
+"""A straight edge of a squared length [m2] below this, a micrometre, is a point."""
+
 
 def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
     """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less."""
@@ -23,7 +26,7 @@ def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutlin
     best = _point_distance(ax, ay, half_length, half_width, best)
     best = _point_distance(bx, by, half_length, half_width, best)
     square = dx * dx + dy * dy
-    if square <= 0.0:
+    if square <= MIN_EDGE_SQUARE:
         return best
     best = _vertex_distance(half_length - ax, half_width - ay, dx, dy, square, best)
     best = _vertex_distance(-half_length - ax, half_width - ay, dx, dy, square, best)

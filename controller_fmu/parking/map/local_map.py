@@ -131,14 +131,19 @@ def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
 
 
 def expected_range(
-    landmarks: tuple[Landmark, ...], sensor: SensorPose, planned: PredictedRange, params: MappingParams
+    landmarks: tuple[Landmark, ...], sensor: SensorPose, planned: PredictedRange, free: float, params: MappingParams
 ) -> PredictedRange:
-    """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer."""
+    """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer.
+
+    A side does not go on beyond an open end where the sensor measures at least ``free`` [m] through it.
+    """
     nearest = planned
     for number in range(LANDMARKS):
         landmark = landmarks[number]
         if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, nearest.distance):
             predicted = predict_range(sensor, with_open_ends_extended(landmark))
+            if predicted.distance < free:
+                predicted = predict_range(sensor, landmark)
             if predicted.distance < nearest.distance:
                 nearest = predicted
     return nearest

@@ -39,7 +39,12 @@ class ReadingStatus(IntEnum):
     NO_ECHO = 2
     """Nothing in the field of view, or a dropout."""
     INVALID = 3
-    """Not a number, or negative."""
+    """Not a number, or nearer than a sensor ever reports."""
+
+
+def is_on_one_side(number: int, other: int) -> bool:
+    """Return whether two sensors are on the same bumper (0 to 3 in front, 4 to 7 behind) or flank (8, 9 and 10, 11)."""
+    return number // 4 == other // 4 and (number < FRONT_LEFT_SIDE or number // 2 == other // 2)
 
 
 def sensor_pose(mount: SensorMount, half_angle: float, vehicle: Pose) -> SensorPose:
@@ -59,7 +64,7 @@ def sensor_pose(mount: SensorMount, half_angle: float, vehicle: Pose) -> SensorP
 
 def reading_status(reading: float, sensors: CarUltrasonic) -> int:
     """Return the ``ReadingStatus`` of a reading [m]."""
-    if not reading >= 0.0:
+    if not reading >= sensors.min_range - sensors.resolution:
         return ReadingStatus.INVALID
     if reading >= NO_ECHO_FRACTION * sensors.max_range:
         return ReadingStatus.NO_ECHO

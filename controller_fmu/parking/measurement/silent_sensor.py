@@ -6,7 +6,7 @@ kind proves that the sensor works. With a dropout probability of 5 %, ``MISSED_E
 
 from typing import NamedTuple
 
-from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus
+from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, is_on_one_side
 
 MISSED_ECHOES = 6
 """In a row, by a working sensor once in 6e7 times (5 % dropouts)."""
@@ -34,10 +34,14 @@ def is_credible_miss(missed: MissedEchoes, sensor: int) -> bool:
     return missed.counts[min(max(sensor, 0), SENSORS - 1)] < MISSED_ECHOES // 2
 
 
-def silent_sensors(missed: MissedEchoes) -> int:
-    """Return how many sensors are silent."""
-    count = 0
-    for number in range(SENSORS):
-        if missed.counts[number] >= MISSED_ECHOES:
-            count += 1
-    return count
+def is_silent(missed: MissedEchoes, sensor: int) -> bool:
+    """Return whether a sensor (0 to 11) is silent."""
+    return missed.counts[min(max(sensor, 0), SENSORS - 1)] >= MISSED_ECHOES
+
+
+def has_blind_side(missed: MissedEchoes) -> bool:
+    """Return whether two sensors beside each other on a bumper or a flank are silent: no other covers their cones."""
+    for number in range(SENSORS - 1):
+        if is_on_one_side(number, number + 1) and is_silent(missed, number) and is_silent(missed, number + 1):
+            return True
+    return False

@@ -1,5 +1,7 @@
 """The planner in the system: a request from the slot as it is known now, continued a bounded amount at each sample."""
 
+import math
+
 from controller_fmu.common.external_slot import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Strategy
@@ -334,7 +336,9 @@ def _free_road(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parkin
     """Return how far the road is taken to be free in the row's frame: x ahead, y on its other side."""
     search = memory.search
     car = params.car
-    at = point_to_frame(search.pose.x, search.pose.y, search.slot.row.frame)
+    slot = search.slot
+    at = point_to_frame(search.pose.x, search.pose.y, slot.row.frame)
     reach = car.ultrasonic.max_range
-    across = search.slot.row.side * at.y - 0.5 * car.width - reach
-    return Pose(at.x + car.wheelbase + car.front_overhang + reach, across, 0.0)
+    ahead = car.wheelbase + car.front_overhang + reach
+    across = (0.5 * car.width + reach) * math.sqrt(1.0 + slot.slope * slot.slope)
+    return Pose(at.x + ahead, slot.row.side * (at.y + slot.slope * ahead) - across, 0.0)

@@ -41,11 +41,13 @@ from controller_fmu.parking.objects.track import (
 )
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput
+from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.slots.slot_filter import predict_slot, update_slot
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
+from modelkit.vocabulary import Pose
 
 YIELD_TIME = 3.0
 """The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
@@ -223,11 +225,14 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
     """Return the search with the slot found on one side (1 left, -1 right), or why the one there is rejected."""
     local_map = memory.perception.local_map
-    row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
+    angled = find_angled_row(local_map.landmarks, local_map.pose, side, params.mapping)
+    row = angled
+    if angled.used == 0:
+        row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     found = find_slot(row, local_map.landmarks, rays, outline, params.slot, params.mapping)
-    if found.type == SlotType.NONE or not _has_passed(found, params):
+    if found.type == SlotType.NONE or not _has_passed(found, local_map.pose, params):
         return search
     if found.reason != Reason.NONE:
         return _without_slot(search, found)
@@ -307,9 +312,10 @@ def is_same_gap(found: SlotCandidate, refused: SlotCandidate) -> bool:
     return planar_distance(a.x, a.y, p.x, p.y) < SAME_GAP and planar_distance(b.x, b.y, q.x, q.y) < SAME_GAP
 
 
-def _has_passed(slot: SlotCandidate, params: ParkingParams) -> bool:
-    """Return whether the vehicle's front has passed the gap; the row's frame is the vehicle's."""
-    return slot.ahead.start < params.car.wheelbase + params.car.front_overhang
+def _has_passed(slot: SlotCandidate, vehicle: Pose, params: ParkingParams) -> bool:
+    """Return whether the front of a vehicle that drives along the row has passed the corner of the gap's far end."""
+    corner = row_point(slot.row, slot.ahead.start, slot.ahead.start_front)
+    return point_to_frame(corner.x, corner.y, vehicle).x < params.car.wheelbase + params.car.front_overhang
 
 
 def search_reason(search: SearchProgress, is_external: bool, params: ParkingParams) -> int:

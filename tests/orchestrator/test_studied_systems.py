@@ -1,4 +1,4 @@
-"""Studies of parking driven by a system that they were not written for: the same rows, what is told, what is kept."""
+"""Studies of parking driven by a system that they were not written for: the same rows, what is set, what is kept."""
 
 from collections.abc import Callable
 from typing import Any

@@ -9,6 +9,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
@@ -124,6 +125,7 @@ def _candidate(
     ratio = log_likelihood_ratio(found)
     parallel = ratio > DECIDED or (ratio > -DECIDED and fits_parallel and not fits_perpendicular)
     parallel = parallel or (abs(ratio) <= DECIDED and fits_parallel)
+    parallel = parallel and row.slope == 0.0
     fits = fits_parallel if parallel else fits_perpendicular
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
     reason = Reason.NONE
@@ -132,7 +134,9 @@ def _candidate(
     elif found.depth < needed:
         reason = Reason.SLOT_TOO_SHALLOW
     kind = SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR
-    return found._replace(type=kind, reason=reason)
+    leads_on = row.slope * row.side > 0.0
+    is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
+    return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in)
 
 
 def _as_driveway(
@@ -168,9 +172,9 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
             is_between_gaps = 0 < number < candidate.row.used - 1
             is_complete = (member.start_known and member.end_known) or is_between_gaps
             if length < MAX_CAR:
-                ratio += _log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
-                one = _log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
-                two = _log_likelihood(length, True, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
+                ratio += length_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
+                one = length_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
+                two = length_log_likelihood(length, True, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
                 ratio -= max(one, two)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * DECIDED
@@ -182,7 +186,7 @@ def merging_penalty(member: RowMember) -> float:
     return MERGING_PENALTY if member.front > RESOLVED_FRONT else 2.0 * DECIDED
 
 
-def _log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
+def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
     """Return the log-likelihood of an observed side; of an incomplete one only what is too long counts."""
     deviation = (length - mean) / sigma
     if not is_complete and deviation < 0.0:

@@ -11,8 +11,6 @@ from modelkit.vocabulary import Pose
 
 OFF_CENTRE = 0.3
 """A gap may be narrower than its empty bays by this [m]: cars stand up to 0.15 m beside the middle of theirs."""
-MAX_KERB_SHIFT = 0.05
-"""Towards a kerb the vehicle leaves its neighbours' line by this [m] at most, if that is enough."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
@@ -24,13 +22,14 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         shift = 0.0
         if left < params.kerb_min:
             shift = left - params.kerb_min
-        elif left > params.kerb_max and left < params.kerb_max + MAX_KERB_SHIFT:
+        elif left > params.kerb_max and left < params.kerb_max + params.kerb_shift:
             shift = left - params.kerb_max
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
         flush = max(candidate.behind.end_front, candidate.ahead.start_front) - candidate.front
+        flush = flush if candidate.slope == 0.0 else 0.0
         deep = candidate.front + outline.half_length + min(flush, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)

@@ -2,6 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.external_slot import SlotKind
 from modelkit.signal import Signal
 
 HOUSE = "project default; the source states none"
@@ -11,6 +12,9 @@ GBT = "GB/T 41630"
 class SlotParams(NamedTuple):
     """What a slot must be, and where the vehicle stands in it."""
 
+    wanted: Annotated[
+        int, Signal("1", "how to stand in it; none: tail in, but nose in where it leads on", states=SlotKind)
+    ] = SlotKind.NONE
     room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
     room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15
@@ -19,6 +23,9 @@ class SlotParams(NamedTuple):
     )
     kerb_min: Annotated[float, Signal("m", "least distance to a kerb beside", 0.05, 1.0, GBT)] = 0.15
     kerb_max: Annotated[float, Signal("m", "largest distance to a kerb beside", 0.05, 1.0, GBT)] = 0.3
+    kerb_shift: Annotated[
+        float, Signal("m", "out of the neighbours' line towards a kerb at most, if that is enough", 0.0, 1.0, HOUSE)
+    ] = 0.05
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
     distance: Annotated[float, Signal("m", "longest distance searched", 1.0, 1000.0, HOUSE)] = 60.0
     confirm_time: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0

@@ -66,6 +66,8 @@ class SlotRow(NamedTuple):
     members: tuple[RowMember, ...] = (RowMember(),) * MEMBERS
     """From ahead to behind."""
     used: int = 0
+    slope: float = 0.0
+    """Of the road against the frame's x axis: the frame of an angled row is square to the direction into a slot."""
 
 
 def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:

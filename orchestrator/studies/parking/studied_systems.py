@@ -27,6 +27,8 @@ class StudiedSystem(NamedTuple):
 
     parameters: Mapping[str, str] = NO_SIGNALS
     """Parameter of the valet -> what this system calls it."""
+    same_rules: Mapping[str, float] = MappingProxyType({})
+    """Parameters with which it stands in a slot by the valet's rules: how near to a kerb, how far out."""
     searching: Mapping[str, float | bool] = MappingProxyType({})
     """Parameters with which it searches slots as the others do by default."""
     shown: Instants | None = None
@@ -69,7 +71,12 @@ SYSTEMS: Mapping[int, StudiedSystem] = {
         },
     ),
     PARKING_SYSTEM: StudiedSystem(
-        parameters={"plan.at_once": "plan.steps_per_sample", "search.way": "slot.distance"},
+        parameters={
+            "plan.at_once": "plan.steps_per_sample",
+            "search.way": "slot.distance",
+            "search.wish": "slot.wanted",
+        },
+        same_rules={"slot.kerb_shift": 0.5, "slot.stand_out": 0.5},
         shown=Instants("controller.parking.state", (int(ParkingState.CONFIRMING),)),
         shown_slot={
             "a.x": "controller.parking.slot.ax",
@@ -118,7 +125,8 @@ def driven_by(scenario: Scenario, system: int) -> Scenario:
     if "slot.kind" in own and scenario.target is not None:
         renamed |= {f"target.{axis}": float(value) for axis, value in scenario.target.model_dump().items()}
     kept = {name: value for name, value in renamed.items() if name in known}
-    return scenario.model_copy(update={"controller": {**kept, "system": system}})
+    rules = SYSTEMS[system].same_rules if own["system"] == VALET_SYSTEM else {}
+    return scenario.model_copy(update={"controller": {**rules, **kept, "system": system}})
 
 
 def required_of(requirements: Sequence[Requirement], system: int) -> list[Requirement]:

@@ -14,7 +14,7 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.parking import detected_slot_study, pull_out_study, search_kpis, slot_rows, study
 from orchestrator.studies.parking.cases import cases as grid_cases
-from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM, driven_by, required_of
+from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM, system_requirements, with_system
 from orchestrator.studies.sweep.in_memory import columns_in_memory
 from orchestrator.studies.sweep.study.imported_fmu import signals_of
 
@@ -62,7 +62,7 @@ def test_a_system_that_cannot_drive_a_study_is_refused(name: str, capsys: pytest
 
 def test_the_slot_of_the_valet_becomes_the_target() -> None:
     case = slot_rows.cases()[40]
-    scenario = driven_by(slot_rows.scenario_of(case), PARKING_SYSTEM)
+    scenario = with_system(slot_rows.scenario_of(case), PARKING_SYSTEM)
     assert scenario.target is not None
     assert scenario.controller["target.heading"] == scenario.target.heading
     assert scenario.controller["search.active"] is False
@@ -72,7 +72,7 @@ def test_the_slot_of_the_valet_becomes_the_target() -> None:
 
 
 def test_requirements_of_the_assist_are_measured_where_the_system_reports_them() -> None:
-    names = [item.signal for item in required_of(library_requirements("apa"), PARKING_SYSTEM)]
+    names = [item.signal for item in system_requirements(library_requirements("apa"), PARKING_SYSTEM)]
     assert "controller.parking.parking_time" in names
     assert not any(name.startswith("controller.apa") for name in names)
 

@@ -26,8 +26,6 @@ OTHERWISE = frozenset(
         "apa-perpendicular-walls",
         "apa-slot-too-short",
         "cicap-pillar",
-        "valet-search-45",
-        "valet-search-60",
         "valet-external-slot",
     }
 )

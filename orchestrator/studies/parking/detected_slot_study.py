@@ -15,9 +15,9 @@ from orchestrator.studies.parking.studied_systems import (
     PARKING_SYSTEM,
     VALET_SYSTEM,
     check_system,
-    driven_by,
     plan_measures,
     study_name,
+    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -48,9 +48,9 @@ def study(
     for case in cases(runs, lot):
         scenario = out_of(case) if out else scenario_of(case, reported)
         scenario = _with_map(scenario) if reported or out else scenario
-        scenarios.append(LabelledScenario(_labels(case, ""), driven_by(scenario, system)))
+        scenarios.append(LabelledScenario(_labels(case, ""), with_system(scenario, system)))
         if ways:
-            scenarios.append(LabelledScenario(_labels(case, WAY), driven_by(_planning_scenario(case), system)))
+            scenarios.append(LabelledScenario(_labels(case, WAY), with_system(_planning_scenario(case), system)))
     scenario, design = design_of(scenarios)
     content = {
         "name": study_name("valet-slots", system, VALET_SYSTEM),

@@ -15,7 +15,7 @@ from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
 from orchestrator.studies.parking.start_range import is_inside
-from orchestrator.studies.parking.studied_systems import SYSTEMS, shown_measures
+from orchestrator.studies.parking.studied_systems import SYSTEMS, display_measures
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
 
@@ -35,7 +35,7 @@ SHOWN_COLUMNS = (*POSES, *(f"{corner}.{axis}" for corner in CORNERS for axis in 
 def measures_of(system: int) -> dict[str, Measure]:
     """Return what is kept of each run: how long it took, and the slot shown."""
     took = {"parking_time": Measure("last", SYSTEMS[system].parking_time)}
-    return took | shown_measures(POSES, system)
+    return took | display_measures(POSES, system)
 
 
 GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}

@@ -30,8 +30,8 @@ from orchestrator.studies.parking.studied_systems import (
     PARKING_SYSTEM,
     SYSTEMS,
     check_system,
-    driven_by,
     study_name,
+    with_system,
 )
 from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
@@ -88,7 +88,7 @@ def study(runs: int = 400, lot: int = 0, people: bool = False, system: int = APA
     check_system("apa-out", system, (APA_SYSTEM, PARKING_SYSTEM))
     chosen = cases(runs, lot, people)
     scenario, design = design_of(
-        LabelledScenario(case_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+        LabelledScenario(case_labels(case), with_system(scenario_of(case), system)) for case in chosen
     )
     side = np.array([[float(side_of(case))] for case in chosen])
     field = find_field("faults[2].value", scenario)

@@ -35,8 +35,8 @@ from orchestrator.studies.parking.studied_systems import (
     APA_SYSTEM,
     PARKING_SYSTEM,
     check_system,
-    driven_by,
     study_name,
+    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
@@ -91,7 +91,7 @@ def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
     """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
     check_system("search-kpis", system, (APA_SYSTEM, PARKING_SYSTEM))
     scenario, design = design_of(
-        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
     )
     content = {
         "name": study_name("search-kpis", system, APA_SYSTEM),

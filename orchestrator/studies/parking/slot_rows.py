@@ -27,9 +27,9 @@ from orchestrator.studies.parking.studied_systems import (
     PARKING_SYSTEM,
     VALET_SYSTEM,
     check_system,
-    driven_by,
     plan_measures,
     study_name,
+    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -136,7 +136,7 @@ def study(lot: int = 0, lots: int = 1, system: int = VALET_SYSTEM) -> Study:
     check_system("valet-rows", system, (VALET_SYSTEM, PARKING_SYSTEM))
     chosen = [case for number in range(lot, lot + lots) for case in cases(number)]
     scenario, design = design_of(
-        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
     )
     content = {
         "name": study_name("valet-rows", system, VALET_SYSTEM),

@@ -112,7 +112,7 @@ def study_name(name: str, system: int, own: int) -> str:
     return name if system == own else f"{name}-{system}"
 
 
-def driven_by(scenario: Scenario, system: int) -> Scenario:
+def with_system(scenario: Scenario, system: int) -> Scenario:
     """Return a scenario driven by ``system``: parameters that it does not have are left out.
 
     A slot that is a parameter of the valet becomes the target pose.
@@ -129,7 +129,7 @@ def driven_by(scenario: Scenario, system: int) -> Scenario:
     return scenario.model_copy(update={"controller": {**rules, **kept, "system": system}})
 
 
-def required_of(requirements: Sequence[Requirement], system: int) -> list[Requirement]:
+def system_requirements(requirements: Sequence[Requirement], system: int) -> list[Requirement]:
     """Return requirements of the assist, the parking time among them measured where ``system`` reports it."""
     own, other = SYSTEMS[APA_SYSTEM].parking_time, SYSTEMS[system].parking_time
     return [
@@ -142,7 +142,7 @@ def plan_measures(system: int) -> dict[str, Measure]:
     return {name: Measure("last", signal) for name, signal in SYSTEMS[system].plan.items()}
 
 
-def shown_measures(signals: Mapping[str, str], system: int) -> dict[str, Measure]:
+def display_measures(signals: Mapping[str, str], system: int) -> dict[str, Measure]:
     """Return the columns ``shown.*``: ``signals``, and the slot, when the slot is shown first."""
     shown = {f"shown.{name}": signal for name, signal in SYSTEMS[system].shown_slot.items()}
     return {name: Measure("first", signal, SYSTEMS[system].shown) for name, signal in {**signals, **shown}.items()}

@@ -21,9 +21,9 @@ from orchestrator.studies.parking.studied_systems import (
     APA_SYSTEM,
     PARKING_SYSTEM,
     check_system,
-    driven_by,
-    required_of,
     study_name,
+    system_requirements,
+    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -42,7 +42,7 @@ def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
     """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
     check_system("apa-grid", system, (APA_SYSTEM, PARKING_SYSTEM))
     scenario, design = design_of(
-        LabelledScenario(_labels(case), driven_by(scenario_of(case), system)) for case in chosen
+        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
     )
     content = {
         "name": study_name("apa-grid", system, APA_SYSTEM),
@@ -54,8 +54,8 @@ def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
     }
     within = {
         **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
-        PROJECT_LIMITS: [*required_of(library_requirements("apa"), system), CLEAR],
-        PROJECT_LIMITS_BUT_MANOEUVRES: [*required_of(library_requirements("apa-tight"), system), CLEAR],
+        PROJECT_LIMITS: [*system_requirements(library_requirements("apa"), system), CLEAR],
+        PROJECT_LIMITS_BUT_MANOEUVRES: [*system_requirements(library_requirements("apa-tight"), system), CLEAR],
     }
     return Study(scenario, design, content, measures=measures_of(system), within=within, derived=FOUND)
 

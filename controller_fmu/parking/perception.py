@@ -19,7 +19,7 @@ from controller_fmu.parking.map.facing_surface import (
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin, direction_of, range_in_map
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange, direction_of, range_in_map
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
     ReadingStatus,
@@ -28,7 +28,9 @@ from controller_fmu.parking.measurement.sensor import (
     sensor_pose,
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
+from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
+    EchoSurface,
     ObjectTrack,
     TrackStatus,
     closing_speed,
@@ -180,8 +182,20 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     expected = expected_range(perception.local_map.landmarks, sensor, planned, measured - tolerance, params.mapping)
     unexplained = measured < expected.distance - tolerance
     towards = direction_of(expected, sensor)
-    is_side = expected.origin == EchoOrigin.INTERIOR
-    return with_expectation(track, expected.distance, towards.x, towards.y, is_side, unexplained)
+    surface = surface_near(expected, measured, params.monitor)
+    return with_expectation(track, expected.distance, towards.x, towards.y, surface, unexplained)
+
+
+def surface_near(expected: PredictedRange, measured: float, params: MonitorParams) -> EchoSurface:
+    """Return the side that an echo came from, as far as half way to the next sensor, which detects it beyond.
+
+    A side farther off than ``unexplained`` from where it was expected is another one; an end has no side.
+    """
+    is_side = expected.origin in (EchoOrigin.INTERIOR, EchoOrigin.CONE_EDGE)
+    if not is_side or abs(measured - expected.distance) > params.unexplained:
+        return EchoSurface()
+    low = max(expected.low, -HALF_SENSOR_SPACING)
+    return EchoSurface(expected.surface.x, expected.surface.y, low, min(expected.high, HALF_SENSOR_SPACING))
 
 
 def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
@@ -200,8 +214,8 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
         unknown,
         ux,
         uy,
-        HALF_SENSOR_SPACING if track.is_side and not unknown else 0.0,
         distance,
+        EchoSurface() if unknown else track.surface,
     )
 
 

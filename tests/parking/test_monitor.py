@@ -12,7 +12,7 @@ from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outl
 from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point
+from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point, predicted_range_to_segment
 from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.monitor.collision_monitor import (
     UNLIMITED,
@@ -25,6 +25,7 @@ from controller_fmu.parking.monitor.collision_monitor import (
 )
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
+    EchoSurface,
     ObjectTrack,
     TrackStatus,
     closing_speed,
@@ -36,7 +37,9 @@ from controller_fmu.parking.objects.track import (
     with_expectation,
 )
 from controller_fmu.parking.obstacle_map import without_explained
+from controller_fmu.parking.perception import surface_near
 from modelkit.car import Car, SensorMount
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 1.0)
@@ -124,6 +127,35 @@ def test_what_the_map_predicts_is_kept_clear_of_where_it_is_measured() -> None:
     assert not verdict(0.1, echoes=(echo,) + NOTHING[1:]).is_blocked, "unlike an unexplained one"
 
 
+def rear_corner_echo(shift: float) -> EchoObstacle:
+    """The echo of the rear left sensor from a wall ``shift`` nearer than mapped, 5 cm beside a rear corner.
+
+    The wall lies at an angle at which the cone's boundary cuts it 0.3 m before the foot of the perpendicular.
+    """
+    sensor = sensor_pose(Car().ultrasonic.mounts[4], math.radians(30.0), Pose())
+    turn = math.radians(25.0)
+    ux, uy = math.cos(turn), math.sin(turn)
+    corner = Point(-0.6, 0.825)
+    foot = Point(corner.x - 0.05 * uy, corner.y + 0.05 * ux)
+    a = Point(foot.x - 3.0 * ux, foot.y - 3.0 * uy)
+    expected = predicted_range_to_segment(sensor, a, Point(foot.x + 3.0 * ux, foot.y + 3.0 * uy))
+    measured = expected.distance - shift
+    share = measured / expected.distance
+    x, y = sensor.x + share * (expected.x - sensor.x), sensor.y + share * (expected.y - sensor.y)
+    return EchoObstacle(x, y, is_present=True, surface=surface_near(expected, measured, MonitorParams()))
+
+
+def test_a_rear_corner_is_kept_clear_of_the_wall_beside_it() -> None:
+    """The corner swept along a wall into it: the wall's echo was a point, on the cone's boundary beside the corner."""
+    echo = rear_corner_echo(0.02)
+    assert verdict(0.0, echoes=(echo,) + NOTHING[1:], direction=-1.0).is_blocked
+    assert not verdict(0.0, echoes=(echo,) + NOTHING[1:], direction=1.0).is_blocked
+
+
+def test_an_echo_far_from_where_a_side_is_expected_is_not_of_that_side() -> None:
+    assert rear_corner_echo(-0.25).surface == EchoSurface()
+
+
 def test_an_approaching_object_stops_earlier() -> None:
     still = EchoObstacle(FRONT + 0.6, 0.0, 0.0, True, True)
     free = verdict(0.5, echoes=(still,) + NOTHING[1:]).free_distance
@@ -141,8 +173,10 @@ def test_a_track_finds_the_closing_speed() -> None:
         distance -= 1.5 * 0.04
         track = update_track(track, True, distance, 0.0, 1e-4, 0.04)
     assert track.status == TrackStatus.CONFIRMED
-    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, False, True)) == pytest.approx(1.5, abs=0.2)
-    assert closing_speed(with_expectation(track, 1.3, 1.0, 0.0, False, False)) == 0.0, "the vehicle approaches a wall"
+    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, EchoSurface(), True)) == pytest.approx(1.5, abs=0.2)
+    assert closing_speed(with_expectation(track, 1.3, 1.0, 0.0, EchoSurface(), False)) == 0.0, (
+        "the vehicle approaches a wall"
+    )
 
 
 def test_own_motion_is_no_closing_speed() -> None:
@@ -150,7 +184,7 @@ def test_own_motion_is_no_closing_speed() -> None:
     for _ in range(12):
         distance -= 0.8 * 0.04
         track = update_track(track, True, distance, 0.8 * 0.04, 1e-4, 0.04)
-    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, False, True)) == 0.0
+    assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, EchoSurface(), True)) == 0.0
 
 
 def test_what_came_into_the_blind_zone_comes_nearer_as_the_vehicle_does() -> None:
@@ -225,7 +259,7 @@ def test_a_remembered_echo_is_forgotten_once_the_map_explains_it() -> None:
     """A rear outer sensor looks 30 deg aside: its echo of the wall behind is put on its axis, 7 cm before that wall."""
     behind, aside = 0.5, math.radians(30.0)
     ux, uy = -math.cos(aside), math.sin(aside)
-    echo = EchoObstacle(behind * ux, behind * uy, 0.0, True, True, ux, uy, 0.0, behind)
+    echo = EchoObstacle(behind * ux, behind * uy, 0.0, True, True, ux, uy, behind)
     wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, 2.0, 1))
     obstacles = ObstacleMap(wall + (Vertex(),) * (VERTICES - 2))
     params = MonitorParams()

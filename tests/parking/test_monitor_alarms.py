@@ -46,7 +46,10 @@ ECHO = {"x": (-FAR, FAR), "y": (-FAR, FAR), "ux": (-1.0, 1.0), "uy": (-1.0, 1.0)
     "closing_speed": (0.0, FAR),
     "is_present": (0, 1),
     "is_unexplained": (0, 1),
-    "half_length": (0.0, 1.0),
+    "surface.along_x": (-1.0, 1.0),
+    "surface.along_y": (-1.0, 1.0),
+    "surface.low": (-1.0, 0.0),
+    "surface.high": (0.0, 1.0),
 }
 HARNESS = """#include "monitor.c"
 #include "__fc_builtin.h"

@@ -6,7 +6,7 @@ import pytest
 
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import without_inside
@@ -18,7 +18,8 @@ from controller_fmu.parking.slots.candidate import (
     find_slot,
     log_likelihood_ratio,
 )
-from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.slots.correction import correct_slot
+from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row
 from modelkit.geometry import Box
@@ -108,6 +109,53 @@ def test_a_car_that_is_still_being_passed_tells_no_width_of_bays() -> None:
     assert bay_width(row) == pytest.approx(2.55)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=cars[1], ahead=cars[0], front=1.5, bay=bay_width(row))
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(2.1, abs=0.05), "one bay, wider than its row's"
+
+
+def side(x: float, y: float, turn: float, length: float) -> Landmark:
+    """A car's side about (x, y), turned by ``turn`` [deg], seen in full."""
+    half, sigma = 0.5 * length, math.radians(0.3)
+    known = Landmark(LandmarkType.SEGMENT, x, y, math.radians(turn), hh=sigma * sigma, start=-half, end=half)
+    return known._replace(start_known=True, end_known=True, confirmations=20)
+
+
+def row_beside(sides: list[Landmark], heading: float) -> SlotRow:
+    rest = (Landmark(),) * (LANDMARKS - len(sides))
+    return find_row((*sides, *rest), Pose(0.0, 2.0, math.radians(heading)), -1.0, MappingParams())
+
+
+def test_a_row_is_found_on_a_slanting_pass() -> None:
+    """10 m farther on a row lies 1.3 m deeper, seen from a pass at 7.5 deg: a wall counted as of the row."""
+    wall = side(-18.5, -2.0, 0.0, 5.6)
+    row = row_beside([side(0.0, 0.0, 1.0, 4.4), side(-10.0, 0.0, -1.0, 4.4), wall], 7.5)
+    assert row.used == 2
+    assert math.degrees(row.frame.heading) == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_car_that_has_left_its_row_does_not_turn_it() -> None:
+    """One stands 0.8 m out of a perpendicular row: the line through both is turned by 10 deg, they are not."""
+    row = row_beside([side(0.0, -0.8, 1.0, 1.8), side(-4.4, 0.0, -1.0, 1.8)], 0.0)
+    assert math.degrees(row.frame.heading) == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_flank_in_the_gap_bounds_it_wherever_its_corner_was_seen() -> None:
+    """The corner was seen 0.9 m too far away as the car moved during the pass."""
+    members = (RowMember(3.5, 5.3, 2.0, True, True), RowMember(-1.8, 0.0, 2.0, True, True))
+    row = SlotRow(Pose(), -1.0, members + (RowMember(),) * 6, 2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=members[1], ahead=members[0], front=2.0)
+    flank = side(2.6, -3.5, 90.0, 2.0)
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
+    assert corrected.ahead.start == pytest.approx(2.6, abs=0.05)
+    assert corrected.behind.end == 0.0
+
+
+def test_a_vehicle_stands_on_the_mean_of_its_neighbours_fronts() -> None:
+    """One that had moved 0.8 m back drew it 0.4 m too deep."""
+    ahead = RowMember(2.6, 4.4, 2.8, True, True, 2.8, 2.8)
+    behind = RowMember(-1.8, 0.0, 2.0, True, True, 2.0, 2.0)
+    row = SlotRow(Pose(), -1.0, (ahead, behind) + (RowMember(),) * 6, 2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead, front=2.4)
+    goal = goal_pose(slot, OUTLINE, SlotParams())
+    assert overhang_of(slot, OUTLINE, goal) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:

@@ -32,6 +32,11 @@ class PredictedRange(NamedTuple):
     origin: int = EchoOrigin.OUT_OF_VIEW
     x: float = 0.0
     y: float = 0.0
+    surface: Point = Point(0.0, 0.0)
+    """Unit vector along the segment; 0 of a point."""
+    low: float = 0.0
+    high: float = 0.0
+    """How far [m] the segment goes on from (x, y) along ``surface``: from ``low`` <= 0 to ``high`` >= 0."""
 
 
 def direction_of(predicted: PredictedRange, sensor: SensorPose) -> Point:
@@ -80,7 +85,17 @@ def predicted_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> Predic
     y = a.y + foot * dy
     px = x - sensor.x
     py = y - sensor.y
-    return PredictedRange(math.sqrt(px * px + py * py), int(origin), x, y)
+    length = math.sqrt(square)
+    surface = Point(dx / length, dy / length) if length > 0.0 else Point(0.0, 0.0)
+    return PredictedRange(
+        math.sqrt(px * px + py * py),
+        int(origin),
+        x,
+        y,
+        surface,
+        -foot * length,
+        (1.0 - foot) * length,
+    )
 
 
 def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> _InBeam:

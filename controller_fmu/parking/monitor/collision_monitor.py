@@ -26,6 +26,7 @@ from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
+from controller_fmu.parking.objects.track import EchoSurface
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -55,10 +56,10 @@ class EchoObstacle(NamedTuple):
     ux: float = 1.0
     """Unit vector from the sensor to it."""
     uy: float = 0.0
-    half_length: float = 0.0
-    """A side goes on across that direction for so far [m]: half way to the next sensor, which detects it beyond."""
     range: float = 0.0
     """Its distance from the sensor [m]."""
+    surface: EchoSurface = EchoSurface()
+    """The side that it is of, where that is known."""
 
 
 class VehicleMotion(NamedTuple):
@@ -164,8 +165,9 @@ def free_by_echoes(
     for number in range(SENSORS):
         echo = echoes[number]
         if echo.is_present and echo.is_unexplained == unexplained:
-            a = Point(echo.x - echo.half_length * echo.uy, echo.y + echo.half_length * echo.ux)
-            b = Point(echo.x + echo.half_length * echo.uy, echo.y - echo.half_length * echo.ux)
+            side = echo.surface
+            a = Point(echo.x + side.low * side.along_x, echo.y + side.low * side.along_y)
+            b = Point(echo.x + side.high * side.along_x, echo.y + side.high * side.along_y)
             least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
                 travelled = horizon * step / POSES

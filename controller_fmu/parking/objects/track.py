@@ -38,6 +38,15 @@ class TrackStatus(IntEnum):
     COASTING = 3
 
 
+class EchoSurface(NamedTuple):
+    """A straight side through an echo's point, along a unit vector from ``low`` <= 0 to ``high`` >= 0 [m]."""
+
+    along_x: float = 0.0
+    along_y: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+
+
 class ObjectTrack(NamedTuple):
     """Range [m] and rate [m/s] of an object along a sensor's direction, own motion removed, with covariance."""
 
@@ -56,8 +65,8 @@ class ObjectTrack(NamedTuple):
     ux: float = 1.0
     """Unit vector from the sensor to where the predicted echo comes from."""
     uy: float = 0.0
-    is_side: bool = False
-    """That is the inside of a side, not its end."""
+    surface: EchoSurface = EchoSurface()
+    """The side that this is of."""
     approach: float = 0.0
     """Approach [m] that no static object could cause: a cumulative sum, begun anew at 0 and above ``MIN_APPROACH``."""
 
@@ -128,11 +137,14 @@ def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: floa
 
 
 def with_expectation(
-    track: ObjectTrack, expected: float, ux: float, uy: float, is_side: bool, is_unexplained: bool
+    track: ObjectTrack, expected: float, ux: float, uy: float, surface: EchoSurface, is_unexplained: bool
 ) -> ObjectTrack:
-    """Return the track with what was ``expected`` [m] in the direction (ux, uy), and whether that explains it."""
+    """Return the track with what was ``expected`` [m] in the direction (ux, uy), and whether that explains it.
+
+    What it does not explain has no known ``surface``.
+    """
     left = MAX_COASTING if is_unexplained else max(track.unexplained - 1, 0)
-    return track._replace(expected=expected, ux=ux, uy=uy, is_side=is_side, unexplained=left)
+    return track._replace(expected=expected, ux=ux, uy=uy, surface=surface, unexplained=left)
 
 
 def closing_speed(track: ObjectTrack) -> float:

@@ -12,8 +12,8 @@ from modelkit.maths import wrap_angle
 
 MIN_CORRECTION_GATE = 0.6
 CORRECTION_GATE_SIGMA = 3.0
-"""A flank corrects a neighbour's corner by at most three standard deviations of that corner, or 0.6 m (three times
-0.2 m) where it is known better."""
+"""A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, or 0.6 m
+(three times 0.2 m) where it is known better."""
 MIN_FLANK = 0.5
 """A shorter side [m] in the slot is no flank."""
 MIN_FACE = 0.2
@@ -26,8 +26,7 @@ MAX_ANGLE = 0.2
 
 def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
     """Return a parallel slot between what has been measured of its neighbours' ends that face it."""
-    behind = candidate.behind.end
-    ahead = candidate.ahead.start
+    corrected = candidate
     across = candidate.row.frame.heading + 0.5 * math.pi
     for number in range(LANDMARKS):
         landmark = landmarks[number]
@@ -39,11 +38,22 @@ def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], pa
             point = point_to_frame(middle.x, middle.y, candidate.row.frame)
             deep = candidate.row.side * point.y - candidate.front
             if 0.0 < deep < CAR_WIDTH:
-                if abs(point.x - candidate.behind.end) < correction_gate(candidate.behind.end_sigma):
-                    behind = point.x
-                if abs(point.x - candidate.ahead.start) < correction_gate(candidate.ahead.start_sigma):
-                    ahead = point.x
-    return candidate._replace(behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead))
+                corrected = _with_edge(corrected, candidate, point.x)
+    return corrected
+
+
+def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float) -> SlotCandidate:
+    """Return a slot with the edge that a flank at ``x`` [m] along its row is.
+
+    It bounds the gap wherever it stands in it: the corner seen from the road may have been moving. Outside the gap it
+    corrects a corner by no more than that is uncertain.
+    """
+    middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
+    if x < middle and x > candidate.behind.end - correction_gate(candidate.behind.end_sigma):
+        return corrected._replace(behind=corrected.behind._replace(end=x))
+    if x >= middle and x < candidate.ahead.start + correction_gate(candidate.ahead.start_sigma):
+        return corrected._replace(ahead=corrected.ahead._replace(start=x))
+    return corrected
 
 
 def correction_gate(sigma: float) -> float:
@@ -57,8 +67,6 @@ def correct_slot(
     """Return the slot between the flanks that have been measured, with the depth that is known now."""
     corrected = candidate
     if candidate.type == SlotType.PERPENDICULAR:
-        behind = candidate.behind.end
-        ahead = candidate.ahead.start
         across = candidate.row.frame.heading + 0.5 * math.pi
         for number in range(LANDMARKS):
             landmark = landmarks[number]
@@ -68,14 +76,8 @@ def correct_slot(
             if is_side and length_of(landmark) > MIN_FLANK and off < MAX_ANGLE:
                 middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
                 point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-                is_deep = candidate.row.side * point.y > candidate.front
-                if is_deep and abs(point.x - candidate.behind.end) < correction_gate(candidate.behind.end_sigma):
-                    behind = point.x
-                if is_deep and abs(point.x - candidate.ahead.start) < correction_gate(candidate.ahead.start_sigma):
-                    ahead = point.x
-        corrected = candidate._replace(
-            behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead)
-        )
+                if candidate.row.side * point.y > candidate.front:
+                    corrected = _with_edge(corrected, candidate, point.x)
     if candidate.type == SlotType.PARALLEL:
         corrected = _between_faces(candidate, landmarks, params)
     return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))

@@ -28,9 +28,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
-        flush = max(candidate.behind.end_front, candidate.ahead.start_front) - candidate.front
-        flush = flush if candidate.slope == 0.0 else 0.0
-        deep = candidate.front + outline.half_length + min(flush, room)
+        deep = candidate.front + outline.half_length + min(0.0, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)
     centre = row_point(candidate.row, middle, deep)

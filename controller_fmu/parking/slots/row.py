@@ -71,10 +71,18 @@ class SlotRow(NamedTuple):
 
 
 def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:
-    """Return the row on one side (1 left, -1 right) of a vehicle that drives along it."""
-    rough = _members(landmarks, vehicle, side, params)
-    turn = _direction(landmarks, rough, params)
-    return _members(landmarks, vehicle._replace(heading=vehicle.heading + turn), side, params)
+    """Return the row on one side (1 left, -1 right) of a vehicle that drives along it.
+
+    Its direction follows first from the headings of the sides alone: only along it shows which stand in one line.
+    """
+    by_headings = _row_in_direction(landmarks, SlotRow(vehicle, side), params)
+    return _row_in_direction(landmarks, by_headings, params)
+
+
+def _row_in_direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> SlotRow:
+    """Return the row in its frame turned into the direction that the landmarks and its members show."""
+    turn = _direction(landmarks, row, params)
+    return _members(landmarks, row.frame._replace(heading=row.frame.heading + turn), row.side, params)
 
 
 def side_as_member(landmark: Landmark, frame: Pose, side: float, params: MappingParams) -> RowMember:
@@ -161,7 +169,10 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
 
 
 def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> float:
-    """Return how far [rad] the row is turned against its frame."""
+    """Return how far [rad] the row is turned against its frame.
+
+    A line that contradicts the headings is none of the row: one of its cars has moved out of it.
+    """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
     total = 0.0
     turn = 0.0
@@ -186,9 +197,13 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
             sy += y
             sxx += x * x
             sxy += x * y
+    by_headings = turn / total if total > 0.0 else 0.0
     spread = sxx - sx * sx / n if n > 0.0 else 0.0
-    if spread > UNEVEN:
-        weight = spread / (UNEVEN * UNEVEN)
-        total += weight
-        turn += weight * math.atan((sxy - sx * sy / n) / spread)
-    return turn / total if total > 0.0 else 0.0
+    if spread <= UNEVEN:
+        return by_headings
+    weight = spread / (UNEVEN * UNEVEN)
+    by_line = math.atan((sxy - sx * sy / n) / spread)
+    difference = by_line - by_headings
+    if total > 0.0 and difference * difference > params.gate * (1.0 / total + 1.0 / weight):
+        return by_headings
+    return (turn + weight * by_line) / (total + weight)

@@ -9,14 +9,20 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
-from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within
+from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.predicted_range import range_in_map
 from controller_fmu.parking.measurement.sensor import SENSORS, SensorPose
-from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
+from controller_fmu.parking.monitor.collision_monitor import (
+    EchoObstacle,
+    landmark_distance,
+    line_distance,
+    side_end,
+    side_start,
+)
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
 from modelkit.geometry import Point
@@ -187,6 +193,13 @@ def away_from_vehicle(landmark: Landmark, outline: VehicleOutline, vehicle: Pose
     return landmark._replace(x=landmark.x + shift * nx, y=landmark.y + shift * ny)
 
 
+def echo_away_from_vehicle(echo: EchoObstacle, outline: VehicleOutline, vehicle: Pose) -> EchoObstacle:
+    """Return an echo whose side lies ``START_CLEARANCE`` or more from a standing vehicle, moved from its sensor."""
+    distance = line_distance(side_start(echo), side_end(echo), outline_frame(vehicle), outline)
+    shift = max(START_CLEARANCE - distance, 0.0)
+    return echo._replace(x=echo.x + shift * echo.ux, y=echo.y + shift * echo.uy)
+
+
 def without_inside(landmark: Landmark, slot: SlotCandidate) -> Landmark:
     """Return a landmark, or none if all of it lies inside the gap: the slot's corrected ends and depth stand for it."""
     if landmark.type == LandmarkType.NONE:
@@ -232,7 +245,10 @@ def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandida
         echo = echoes.present[min(at - REMEMBERED, SENSORS - 1)]
     if not echo.is_present or (at >= REMEMBERED and echo.is_unexplained):
         return Vertex()
-    half = 0.5 * ECHO_SIZE if echo.is_unexplained else 0.0
+    if not echo.is_unexplained:
+        end = side_start(echo) if corner < 2 else side_end(echo)
+        return Vertex(end.x, end.y, LANDMARKS + 1 + index)
+    half = 0.5 * ECHO_SIZE
     dx = -half if corner == 0 or corner == 3 else half
     dy = -half if corner < 2 else half
     return Vertex(echo.x + dx, echo.y + dy, LANDMARKS + 1 + index)

@@ -22,6 +22,7 @@ from controller_fmu.parking.obstacle_map import (
     KnownEchoes,
     VehiclePlace,
     away_from_vehicle,
+    echo_away_from_vehicle,
     is_on_map,
     obstacle_map,
     with_known_map,
@@ -241,7 +242,9 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         without_explained(before[number], mapped, half_angle, params.monitor) for number in range(REMEMBERED)
     )
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
-    echoes = KnownEchoes(remembered, memory.perception.echoes)
+    present = memory.perception.echoes
+    present = tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(SENSORS))
+    echoes = KnownEchoes(remembered, present)
     obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
     goal = goal_pose(slot, outline, params.slot)
     memory = _with_plan(memory, obstacles, goal, inputs, params)

@@ -189,10 +189,11 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
 def surface_near(expected: PredictedRange, measured: float, params: MonitorParams) -> EchoSurface:
     """Return the side that an echo came from, as far as half way to the next sensor, which detects it beyond.
 
-    A side farther off than ``unexplained`` from where it was expected is another one; an end has no side.
+    A farther echo shows that no side is where one was expected, a nearer one that it is displaced; an end has no side.
     """
     is_side = expected.origin in (EchoOrigin.INTERIOR, EchoOrigin.CONE_EDGE)
-    if not is_side or abs(measured - expected.distance) > params.unexplained:
+    nearer = expected.distance - measured
+    if not is_side or nearer > params.unexplained or nearer < -DISPLACED:
         return EchoSurface()
     low = max(expected.low, -HALF_SENSOR_SPACING)
     return EchoSurface(expected.surface.x, expected.surface.y, low, min(expected.high, HALF_SENSOR_SPACING))

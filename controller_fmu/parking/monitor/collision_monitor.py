@@ -165,9 +165,8 @@ def free_by_echoes(
     for number in range(SENSORS):
         echo = echoes[number]
         if echo.is_present and echo.is_unexplained == unexplained:
-            side = echo.surface
-            a = Point(echo.x + side.low * side.along_x, echo.y + side.low * side.along_y)
-            b = Point(echo.x + side.high * side.along_x, echo.y + side.high * side.along_y)
+            a = side_start(echo)
+            b = side_end(echo)
             least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
             for step in range(1, POSES + 1):
                 travelled = horizon * step / POSES
@@ -179,6 +178,18 @@ def free_by_echoes(
                 if travelled < free and distance < required and (distance < least or echo.closing_speed > 0.0):
                     free = horizon * (step - 1) / POSES
     return free
+
+
+def side_start(echo: EchoObstacle) -> Point:
+    """Return where the side of an echo begins; of a point, that point."""
+    side = echo.surface
+    return Point(echo.x + side.low * side.along_x, echo.y + side.low * side.along_y)
+
+
+def side_end(echo: EchoObstacle) -> Point:
+    """Return where the side of an echo ends."""
+    side = echo.surface
+    return Point(echo.x + side.high * side.along_x, echo.y + side.high * side.along_y)
 
 
 def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -> float:

@@ -19,7 +19,7 @@ MIN_FLANK = 0.5
 MIN_FACE = 0.2
 """And this [m] of a neighbour's end: the distance of two sensors."""
 MAX_FACE_ANGLE = 0.35
-"""Such an end is known less exactly, and cars stand askew [rad]."""
+"""Such an end is known less exactly, and cars stand misaligned [rad]."""
 MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
 

@@ -1,7 +1,7 @@
 """The row beside the road: sides along the road on one flank of the vehicle, in order, and the row's direction.
 
 The direction is the mean of two kinds of evidence, weighted by their variances: the headings of the sides (their
-covariance plus how askew cars stand), and the line through the sides' middles (how unevenly cars stand over the span).
+covariance plus the misalignment of cars), and the line through the sides' middles (how unevenly cars stand).
 """
 
 import math
@@ -32,7 +32,7 @@ ROW_DEPTH = 1.0
 MEMBER_GAP = 0.35
 """Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
 ASKEW_VARIANCE = 0.0012
-"""How askew cars stand in a row, standard deviation 2 deg [rad2]."""
+"""Of the misalignment of cars in a row, standard deviation 2 deg [rad2]."""
 UNEVEN = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9
@@ -48,7 +48,7 @@ class RowMember(NamedTuple):
     start_known: bool = False
     end_known: bool = False
     start_front: float = 0.0
-    """Its front at the start, and at the end [m]: cars stand askew."""
+    """Its front at the start, and at the end [m]: cars stand misaligned."""
     end_front: float = 0.0
     start_sigma: float = 0.0
     """Standard deviation of its start, and of its end [m]."""

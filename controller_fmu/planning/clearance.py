@@ -7,6 +7,7 @@ step is longer than the margin over ``fastest``.
 """
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import PlannedCar, Task, drive, fastest
@@ -77,22 +78,37 @@ def edge_gap(ax: float, ay: float, bx: float, by: float, car: PlannedCar, best: 
     return _corner_gap(-half_length - ax, -half_width - ay, dx, dy, square, best)
 
 
+class Sweep(NamedTuple):
+    """How far the car can drive along an arc."""
+
+    way: float
+    """Before its clearance falls under the margin [m]."""
+    gap: float
+    """Clearance beyond the margin [m] where the sweep has ended."""
+
+
 def free_way(store: PlanStore, pose: Pose, direction: float, curvature: float, longest: float, task: Task) -> float:
     """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
+    return sweep(store, pose, clearance(store, pose, task) - task.margin, direction, curvature, longest, task).way
+
+
+def sweep(
+    store: PlanStore, pose: Pose, gap: float, direction: float, curvature: float, longest: float, task: Task
+) -> Sweep:
+    """Drive along an arc, at most ``longest`` [m], from a pose whose clearance beyond the margin [m] is ``gap``."""
     rate = fastest(task.car, curvature)
     least = LEAST_STEP if LEAST_STEP * rate < task.margin else task.margin / rate
     way = 0.0
-    gap = clearance(store, pose, task) - task.margin
     while way < longest:
         sure = gap / rate if gap > 0.0 else 0.0
         step = sure if sure > least else least
         after = way + step if way + step < longest else longest
         gap_after = clearance(store, drive(pose, direction * after, curvature), task) - task.margin
         if gap_after < 0.0:
-            return way + sure if way + sure < longest else longest
+            return Sweep(way + sure if way + sure < longest else longest, gap_after)
         way = after
         gap = gap_after
-    return longest
+    return Sweep(longest, gap)
 
 
 def _point_gap(x: float, y: float, half_length: float, half_width: float, best: float) -> float:

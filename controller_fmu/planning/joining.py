@@ -1,6 +1,6 @@
 """The words that lead to the target, cheapest first, and whether the car can drive one: how a node is joined to it."""
 
-from controller_fmu.planning.clearance import free_way
+from controller_fmu.planning.clearance import clearance, sweep
 from controller_fmu.planning.plan_store import (
     BEST_COST,
     BEST_NODE,
@@ -39,9 +39,12 @@ def join(store: PlanStore, node: int, pose: Pose, words: int, task: Task) -> Non
 def cheapest(store: PlanStore, words: int) -> int:
     """Return the word of least cost."""
     best = 0
+    least = store.word_cost[0]
     for word in range(1, words):
-        if store.word_cost[word] < store.word_cost[best]:
+        cost = store.word_cost[word]
+        if cost < least:
             best = word
+            least = cost
     return best
 
 
@@ -80,12 +83,15 @@ def _ends_free(store: PlanStore, word: int) -> bool:
 def is_word_free(store: PlanStore, word: int, pose: Pose, task: Task) -> bool:
     """Return whether the car can drive a word from ``pose``."""
     rest = store.word_code[word]
+    gap = clearance(store, pose, task) - task.margin
     for piece in range(5):
         way = word_way(store, word, piece)
         k = (rest % 3 - 1) * task.car.curvature
         rest = rest // 3
         if way != 0.0:
-            if free_way(store, pose, sign(way), k, abs(way), task) < abs(way):
+            driven = sweep(store, pose, gap, sign(way), k, abs(way), task)
+            if driven.way < abs(way):
                 return False
+            gap = driven.gap
             pose = drive(pose, way, k)
     return True

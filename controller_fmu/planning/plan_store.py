@@ -76,8 +76,7 @@ class PlanStore(NamedTuple):
     kept_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
     kept_speed: Annotated[Floats, Column("d", PIECES, "m/s", "its largest speed: see Piece")]
     joint_share: Annotated[Floats, Column("d", PIECES, "1", "share of the transition wished for about its begin")]
-    arc_way: Annotated[Floats, Column("d", PIECES, "m", "length of a piece between its transitions")]
-    arc_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature there")]
+    arc_k: Annotated[Floats, Column("d", PIECES, "1/m", "curvature of a piece between its transitions")]
     kept_room: Annotated[Floats, Column("d", PIECES, "m", "room about its begin: see Piece")]
     corner_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the scene asked about")]
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
@@ -129,6 +128,9 @@ JOINT = 21
 """The transition that is tried now."""
 SLICES = 22
 """Arcs of a transition on one side of a stop."""
+WORDS_NODE = 23
+"""The node whose words are listed."""
+WORD_COUNT = 24
 
 BEST_COST = 0
 BEST_WAY = 1
@@ -271,9 +273,9 @@ def put_arc_curvature(store: PlanStore, piece: int, k: float) -> None:
     store.arc_k[piece] = k
 
 
-def put_arc(store: PlanStore, piece: int, way: float) -> None:
-    """Set the length of a piece between its transitions."""
-    store.arc_way[piece] = way
+def put_piece_way(store: PlanStore, piece: int, way: float) -> None:
+    """Set the way of a piece of the path."""
+    store.piece_way[piece] = way
 
 
 def put_room(store: PlanStore, piece: int, room: float) -> None:

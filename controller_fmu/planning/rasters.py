@@ -194,13 +194,13 @@ def _relax(store: PlanStore, cell: int, window: SearchWindow) -> None:
     row = cell // count
     column = cell - row * count
     here = store.route[cell]
-    for side in range(9):
-        r = row + side // 3 - 1
-        c = column + side % 3 - 1
-        if side != 4 and 0 <= r < count and 0 <= c < count:
+    straight = here + window.route
+    diagonal = here + window.route * 1.41421356
+    for r in range(max(0, row - 1), min(count, row + 2)):
+        for c in range(max(0, column - 1), min(count, column + 2)):
             other = r * count + c
             before = store.route[other]
-            way = here + window.route * (1.0 if side % 2 == 1 else 1.41421356)
+            way = straight if r == row or c == column else diagonal
             if before >= 0.0 and way < before - 1e-3:
                 put_route(store, other, way)
                 if store.route_next[other] == UNLISTED:

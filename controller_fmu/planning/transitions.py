@@ -10,7 +10,7 @@ left, or the outline would come too near to an obstacle.
 import math
 from typing import NamedTuple
 
-from controller_fmu.planning.clearance import free_way
+from controller_fmu.planning.clearance import clearance, sweep
 from controller_fmu.planning.plan_store import (
     JOINT,
     KEPT_COUNT,
@@ -18,13 +18,13 @@ from controller_fmu.planning.plan_store import (
     PIECE_COUNT,
     SLICES,
     PlanStore,
-    put_arc,
     put_arc_curvature,
     put_kept,
     put_kept_speed,
     put_mark,
     put_piece,
     put_piece_speed,
+    put_piece_way,
     put_share,
 )
 from controller_fmu.planning.task import Dynamics, Request, Task, drive
@@ -229,80 +229,81 @@ def _bent_way(store: PlanStore, piece: int) -> float:
 
 def _solve(store: PlanStore, start: Pose, heading: float, dynamics: Dynamics) -> int:
     """Lay out the path with lengths so that it ends at the goal; returns a piece that is too short if any is."""
-    count = store.mark[KEPT_COUNT]
-    for piece in range(count):
-        before = _transition(store, piece, dynamics)
-        after = _transition(store, piece + 1, dynamics)
-        late = _way_of_time(before.late, before, dynamics.acceleration)
-        early = _way_of_time(after.early, after, dynamics.deceleration)
-        put_arc(store, piece, _bent_way(store, piece) - late - early)
+    _lay_out(store, dynamics)
     for _ in range(MAX_ITERATIONS):
-        end = _lay_out(store, start, dynamics)
+        end = _end(store, start)
         turn = wrap_angle(heading - end.heading)
         if abs(end.x) + abs(end.y) + abs(turn) < CONVERGED:
-            for piece in range(count):
-                if store.arc_way[piece] < MIN_ARC:
-                    return piece
-            return SOLVED
+            return _too_short(store)
         solved = _correct_lengths(store, end, turn)
         if not solved:
             return UNSOLVED
     return UNSOLVED
 
 
-def _lay_out(store: PlanStore, start: Pose, dynamics: Dynamics) -> Pose:
-    """Write the pieces of the path with transitions, and the lengths in hand between; returns where it ends."""
+def _lay_out(store: PlanStore, dynamics: Dynamics) -> None:
+    """Write the pieces of the path with transitions; those between them become shorter by what transitions take."""
     put_mark(store, PIECE_COUNT, 0)
     count = store.mark[KEPT_COUNT]
-    pose = start
-    for joint in range(count + 1):
-        transition = _transition(store, joint, dynamics)
-        if joint > 0:
-            pose = _add_early(store, pose, transition, sign(store.kept_way[joint - 1]), dynamics)
-        if joint < count:
-            direction = sign(store.kept_way[joint])
-            pose = _add_late(store, pose, transition, direction, dynamics)
-            pose = _add(store, pose, direction * store.arc_way[joint], store.arc_k[joint], 0.0)
-    return pose
+    before = _transition(store, 0, dynamics)
+    for piece in range(count):
+        direction = sign(store.kept_way[piece])
+        after = _transition(store, piece + 1, dynamics)
+        late = _way_of_time(before.late, before, dynamics.acceleration)
+        early = _way_of_time(after.early, after, dynamics.deceleration)
+        _add_half(store, before, True, direction, dynamics)
+        _add(store, direction * (_bent_way(store, piece) - late - early), store.arc_k[piece], 0.0)
+        _add_half(store, after, False, direction, dynamics)
+        before = after
 
 
-def _add_early(store: PlanStore, pose: Pose, transition: Transition, direction: float, dynamics: Dynamics) -> Pose:
-    """Add the arcs of a transition before the begin of a piece."""
-    count = _slices(store, transition.stops, transition.early)
+def _add_half(store: PlanStore, transition: Transition, late: bool, direction: float, dynamics: Dynamics) -> None:
+    """Add the arcs of a transition before or behind (``late``) the begin of a piece; none sets out too fast."""
+    time = transition.late if late else transition.early
+    count = _slices(store, transition.stops, time)
     rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
+    acceleration = dynamics.acceleration if late else dynamics.deceleration
     for number in range(count):
-        each = transition.early / count
-        left = transition.early - number * each
-        far = _way_of_time(left, transition, dynamics.deceleration)
-        near = _way_of_time(left - each, transition, dynamics.deceleration)
+        each = time / count
+        far = (number + 1) * each if late else time - number * each
+        near = number * each if late else far - each
         angle = transition.angle_before + rate * (number + 0.5) * each
-        pose = _add(store, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, transition.speed)
-    return pose
-
-
-def _add_late(store: PlanStore, pose: Pose, transition: Transition, direction: float, dynamics: Dynamics) -> Pose:
-    """Add the arcs of a transition behind the begin of a piece; setting out, no faster than planned."""
-    count = _slices(store, transition.stops, transition.late)
-    rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
-    for number in range(count):
-        each = transition.late / count
-        near = _way_of_time(number * each, transition, dynamics.acceleration)
-        far = _way_of_time((number + 1) * each, transition, dynamics.acceleration)
-        angle = transition.angle_after - rate * (transition.late - (number + 0.5) * each)
         speed = transition.speed
-        if transition.stops:
-            speed = min(speed, dynamics.acceleration * (number + 1) * each)
-        pose = _add(store, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, speed)
-    return pose
+        if late:
+            angle = transition.angle_after - rate * (time - (number + 0.5) * each)
+            speed = min(speed, acceleration * far) if transition.stops else speed
+        way = _way_of_time(far, transition, acceleration) - _way_of_time(near, transition, acceleration)
+        _add(store, direction * way, math.tan(angle) / dynamics.wheelbase, speed)
 
 
-def _add(store: PlanStore, pose: Pose, way: float, k: float, speed: float) -> Pose:
-    """Add a piece; returns where it ends."""
+def _add(store: PlanStore, way: float, k: float, speed: float) -> None:
+    """Add a piece; where it begins is not known yet."""
     number = store.mark[PIECE_COUNT]
-    put_piece(store, number, pose, way, k)
+    put_piece(store, number, Pose(), way, k)
     put_piece_speed(store, number, speed)
     put_mark(store, PIECE_COUNT, number + 1)
-    return drive(pose, way, k)
+
+
+def _end(store: PlanStore, start: Pose) -> Pose:
+    """Set where the pieces laid out begin; returns where the path ends."""
+    pose = start
+    for number in range(store.mark[PIECE_COUNT]):
+        way = store.piece_way[number]
+        k = store.piece_k[number]
+        put_piece(store, number, pose, way, k)
+        pose = drive(pose, way, k)
+    return pose
+
+
+def _too_short(store: PlanStore) -> int:
+    """Return the first piece too short between its transitions, or ``SOLVED``."""
+    piece = 0
+    for number in range(store.mark[PIECE_COUNT]):
+        if store.piece_speed[number] == 0.0:
+            if store.piece_way[number] * sign(store.kept_way[piece]) < MIN_ARC:
+                return piece
+            piece += 1
+    return SOLVED
 
 
 class NormalMatrix(NamedTuple):
@@ -383,19 +384,26 @@ def _correct_lengths(store: PlanStore, end: Pose, turn: float) -> bool:
             way = store.kept_way[piece]
             slope = _end_slope(store, number, sign(way), end)
             change = _bent_way(store, piece) * (slope.x * x + slope.y * y + slope.heading * h)
-            put_arc(store, piece, store.arc_way[piece] + change)
+            put_piece_way(store, number, store.piece_way[number] + sign(way) * change)
             piece += 1
     return True
 
 
 def _is_free(store: PlanStore, task: Task) -> bool:
     """Return whether the path laid out keeps its margin."""
+    gap = clearance(store, _begin(store, 0), task) - task.margin
     for number in range(store.mark[PIECE_COUNT]):
         way = store.piece_way[number]
-        pose = Pose(store.piece_x[number], store.piece_y[number], store.piece_h[number])
-        if free_way(store, pose, sign(way), store.piece_k[number], abs(way), task) < abs(way):
+        driven = sweep(store, _begin(store, number), gap, sign(way), store.piece_k[number], abs(way), task)
+        if driven.way < abs(way):
             return False
+        gap = driven.gap
     return True
+
+
+def _begin(store: PlanStore, number: int) -> Pose:
+    """Return where a piece laid out begins."""
+    return Pose(store.piece_x[number], store.piece_y[number], store.piece_h[number])
 
 
 def _keep(store: PlanStore) -> None:

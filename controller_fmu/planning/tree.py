@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.planning.clearance import free_way
+from controller_fmu.planning.clearance import clearance, sweep
 from controller_fmu.planning.joining import LONGEST, cheapest, join
 from controller_fmu.planning.plan_store import (
     BEST_NODE,
@@ -18,6 +18,8 @@ from controller_fmu.planning.plan_store import (
     NONE,
     SLOTS,
     TALLIES,
+    WORD_COUNT,
+    WORDS_NODE,
     PlanStore,
     put_mark,
     put_measure,
@@ -64,11 +66,14 @@ REGION = 1.5
 def begin_tree(store: PlanStore, task: Task) -> None:
     """Plant the root, and measure how far the car can drive from the target."""
     clear_tree(store)
+    put_mark(store, WORDS_NODE, NONE)
+    gap = clearance(store, task.target, task) - task.margin
     for gear in range(2):
         for turn in range(3):
             k = (turn - 1) * task.car.curvature
-            way = free_way(store, task.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), task)
-            put_measure(store, FREE_AT_TARGET + 3 * gear + turn, way)
+            longest = 60.0 if turn == 1 else TWO_PI / abs(k)
+            free = sweep(store, task.target, gap, 2.0 * gear - 1.0, k, longest, task)
+            put_measure(store, FREE_AT_TARGET + 3 * gear + turn, free.way)
     offer(store, Child(task.root, 0.0, 0.0, 0.0, NONE), task)
 
 
@@ -108,7 +113,7 @@ def look_at(store: PlanStore, node: int, task: Task) -> bool:
     """Work out what a way through a node will cost; returns whether it has to wait, put back into the queue."""
     pose = pose_of(store, node)
     if store.node_state[node] == GUESSED:
-        words = list_words(store, pose, task.target, gear_of(store, node), lock_of(store, node, task), task)
+        words = words_of(store, node, task)
         shortest = store.word_cost[cheapest(store, words)]
         route = route_left(store, pose.x, pose.y, task.window)
         put_rest(store, node, shortest if shortest > route else route)
@@ -131,11 +136,21 @@ def take_up(store: PlanStore, node: int, task: Task) -> None:
     put_state(store, node, DONE)
     put_mark(store, EXPANDED, store.mark[EXPANDED] + 1)
     look_around(store, pose, task)
-    words = list_words(store, pose, task.target, gear, lock, task)
+    words = words_of(store, node, task)
     join(store, node, pose, words, task)
     branch(store, node, pose, gear, lock, task)
     if none_yet and store.mark[BEST_NODE] != NONE:
         put_mark(store, FOUND_AT, store.mark[EXPANDED])
+
+
+def words_of(store: PlanStore, node: int, task: Task) -> int:
+    """List the words from a node to the target, unless it is they that are listed; returns how many."""
+    if store.mark[WORDS_NODE] != node:
+        gear = gear_of(store, node)
+        words = list_words(store, pose_of(store, node), task.target, gear, lock_of(store, node, task), task)
+        put_mark(store, WORDS_NODE, node)
+        put_mark(store, WORD_COUNT, words)
+    return store.mark[WORD_COUNT]
 
 
 def pose_of(store: PlanStore, node: int) -> Pose:
@@ -176,12 +191,12 @@ def guess(store: PlanStore, pose: Pose, cost: float, task: Task) -> float:
 
 def look_around(store: PlanStore, pose: Pose, task: Task) -> None:
     """Measure how far the car can drive from a node, in both gears at five curvatures."""
+    gap = clearance(store, pose, task) - task.margin
     for gear in range(2):
         for turn in range(5):
             k = 0.5 * (turn - 2) * task.car.curvature
-            put_measure(
-                store, FREE_AT_NODE + 5 * gear + turn, free_way(store, pose, 2.0 * gear - 1.0, k, LONGEST, task)
-            )
+            free = sweep(store, pose, gap, 2.0 * gear - 1.0, k, LONGEST, task)
+            put_measure(store, FREE_AT_NODE + 5 * gear + turn, free.way)
 
 
 def branch(store: PlanStore, node: int, pose: Pose, gear: float, lock: float, task: Task) -> None:

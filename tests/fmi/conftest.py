@@ -4,15 +4,17 @@ from typing import Any
 import pytest
 import toy_model
 
+from controller_fmu import APART, VALET
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu import VALET
 from fmus.native.libraries import python_front
 from fmus.python.fmu import build
 from tests.fmi.built import native_fmu_of
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
-ALL_MODELS = {**MODELS, VALET.name: VALET}
+ALL_MODELS = {**MODELS, **{model.name: model for model in map(APART.__getitem__, APART)}}
+ON_EACH_CHANGE = {*MODELS, VALET.name}
+"""Of the standalone controllers one is enough."""
 
 
 @pytest.fixture(scope="session")
@@ -50,7 +52,12 @@ def model(request: pytest.FixtureRequest) -> Any:
     return MODELS[request.param]
 
 
-@pytest.fixture(params=list(ALL_MODELS))
+def marked(name: str, *more: Any) -> Any:
+    """Return the parameters of a test of a model, left to make release if others cover it on each change."""
+    return pytest.param(name, *more, marks=[] if name in ON_EACH_CHANGE else pytest.mark.release)
+
+
+@pytest.fixture(params=[marked(name) for name in ALL_MODELS])
 def any_model(request: pytest.FixtureRequest) -> Any:
-    """One of all models, the controller apart too."""
+    """One of all models, the standalone controllers too."""
     return ALL_MODELS[request.param]

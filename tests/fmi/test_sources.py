@@ -12,7 +12,6 @@ import pytest
 import table_model
 import toy_model
 
-from controller_fmu import VALET
 from fmus.compiler import Translation
 from fmus.contents.variables import fmi_variables, visible_variables
 from fmus.native import fmu as native_fmu
@@ -23,10 +22,9 @@ from fmus.native.source_fingerprint import CACHED_TRANSLATIONS
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.variables import variables, with_values
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.inputs.scenario.models import MODELS as SHIPPED
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
-from tests.fmi.conftest import ALL_MODELS
+from tests.fmi.conftest import ALL_MODELS, marked
 from tests.fmi.host import calculated, random_inputs
 from tests.fmi.raw import ERROR, OK, Library
 from tests.fmi.raw3 import Library3
@@ -40,12 +38,24 @@ COMPILERS = [
     pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None, reason="needs gcc")),
     pytest.param(CLANG, id="clang", marks=pytest.mark.release),
 ]
-LARGE_ONCE = [("Controller", 2), ("Controller_valet", 3)]
+LARGE_ONCE = [
+    ("Controller", 2),
+    ("Controller_valet", 3),
+    ("Controller_valet_large", 2),
+    ("Controller_parking", 3),
+]
 MODELS_BY_FMI = [
-    *((name, fmi) for name in ALL_MODELS for fmi in (2, 3) if name not in dict(LARGE_ONCE)),
+    *(marked(name, fmi) for name in ALL_MODELS for fmi in (2, 3) if name not in dict(LARGE_ONCE)),
     *(pytest.param(*large, marks=pytest.mark.release) for large in LARGE_ONCE),
 ]
 """Of a large model one version of FMI is enough: what is written for a version is the same in all."""
+DRIVES = [
+    ("guo2015-case4",),
+    ("valet-parallel",),
+    ("valet-parallel", "controller.system=valet_large"),
+    ("apa-parallel", "controller.system=parking"),
+]
+"""Scenarios and overrides whose signals are the inputs of the models in them."""
 needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")
 
 
@@ -76,12 +86,11 @@ def without_binaries(path: Any, copy: Any) -> Any:
 @lru_cache
 def given(model: Any) -> Any:
     """Return parameters, and the inputs of 400 steps: of a drive for the models in it, else random ones."""
-    drives = {"guo2015-case4": SHIPPED, "valet-parallel": {"controller": VALET}}
-    found = [(drive, part) for drive, parts in drives.items() for part, one in parts.items() if one is model]
+    scenarios = [load_scenario(name, ["stop_time=4", *more]) for name, *more in DRIVES]
+    found = [(one, part) for one in scenarios for part, own in one.models.items() if own is model]
     if not found:
         return {}, random_inputs(visible_variables(model), 5, 400)
-    ((drive, part),) = found
-    scenario = load_scenario(drive, ["stop_time=4"])
+    scenario, part = found[0]
     signals = run_scenario(scenario, fmu_files("native"), kind="native").recording.signals
     names = {item.name: item.kind for item in visible_variables(model) if item.causality == "input"}
     inputs = [{name: kind(signals[f"{part}.{name}"][k]) for name, kind in names.items()} for k in range(400)]

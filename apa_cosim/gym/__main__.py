@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from math import isnan
 from pathlib import Path
 from typing import get_args
 
@@ -26,7 +27,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--episodes", type=int, default=100, metavar="N", help="scenes of each (100)")
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, metavar="S", help=f"of the scenes ({FIRST_SEED})")
     parser.add_argument("--body", choices=get_args(Body), help="equations of motion")
-    cases = f"cases of {', '.join(FILE_IDS)}"
+    cases = f"cases of {', '.join(FILE_IDS)}, or folders of them"
     parser.add_argument("--files", nargs="+", type=Path, default=[], metavar="FILE", help=cases)
     asked = parser.parse_args(arguments)
     if asked.episodes < 1:
@@ -46,17 +47,18 @@ def main(arguments: list[str]) -> int:
 
 def _table(scores: list[Score]) -> Table:
     table = Table(box=None, title="the same scenes for all systems of an environment")
-    for head in ("environment", "system", "scenes", "parked", "95 %", "contacts", "median time [s]"):
+    for head in ("environment", "system", "scenes", "parked", "95 %", "contacts", "median time"):
         table.add_column(head, justify="left" if head in ("environment", "system") else "right")
     for item in sorted(scores, key=lambda item: (item.scenes, -item.success_count, item.contacts)):
         low, high = item.interval
+        time = "" if isnan(item.median_time) else f"{item.median_time:.1f} s"
         cells = [
             str(len(item.outcomes)),
             str(item.success_count),
             f"{100 * low:.1f} to {100 * high:.1f}",
             str(item.contacts),
         ]
-        table.add_row(item.scenes, Path(item.system).name, *cells, f"{item.median_time:.1f}")
+        table.add_row(item.scenes, Path(item.system).name, *cells, time)
     return table
 
 

@@ -43,16 +43,16 @@ POSITION = ("final heading", "final lateral position")
 """What GB/T 41630 asks of the final pose."""
 READERS = {".csv": read_tpcap, ".json": read_parkbench}
 """Suffix of a benchmark's file -> its reader."""
+SUFFIXES = (*READERS, ".yaml", ".yml")
 
 
 class FileScenes:
-    """A scene for each file; that of a seed is the file of the remainder. Raises ``BadInput``."""
+    """A scene for each file, also of folders; that of a seed is the file of the remainder. Raises ``BadInput``."""
 
     def __init__(self, files: Sequence[str | Path], body: str, stop_time: float, pedals: bool) -> None:
         if not files:
-            text = "name the cases, which are not part of the package: gymnasium.make(id, files=[...])"
-            raise BadInput(text, key="files")
-        read = [_policy_scenario(_scenario(Path(file)), body, stop_time, pedals) for file in files]
+            raise BadInput("expected files of cases, or folders of them; they are not part of the package", key="files")
+        read = [_policy_scenario(_scenario(file), body, stop_time, pedals) for file in _cases(files)]
         self._scenarios = read
         self.scenario = read[0].model_copy(update={"obstacles": []})
         runs = [(make_job(_study(item)), _chunk(item)) for item in read]
@@ -72,6 +72,17 @@ class FileScenes:
     def obstacles(self, seed: int) -> Polygons:
         """Return the polygons of the scene of a seed."""
         return self.scenario_of(seed).obstacles
+
+
+def _cases(places: Sequence[str | Path]) -> list[Path]:
+    """Return the files, in place of a folder those in it that can be read."""
+    found: list[Path] = []
+    for place in map(Path, places):
+        inside = [item for item in place.iterdir() if item.suffix.lower() in SUFFIXES] if place.is_dir() else [place]
+        if not inside:
+            raise BadInput(f"no case ({', '.join(SUFFIXES)}) in this folder", file=place)
+        found += sorted(inside, key=lambda item: (len(item.stem), item.name))
+    return found
 
 
 def _scenario(file: Path) -> Scenario:

@@ -37,7 +37,7 @@ class EnvironmentOptions(NamedTuple):
     """Actions are accelerator (negative: reverse), steering wheel and brake; else speed and steering wheel."""
     reward: Reward = Reward()
     files: Sequence[str | Path] = ()
-    """apa/TPCAP-v0, apa/ParkBench-v0: their cases."""
+    """apa/TPCAP-v0, apa/ParkBench-v0: their cases, or folders of them."""
 
 
 class GivenOptions(TypedDict, total=False):

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 FOREIGN = "foreign"
 """Kind of an FMU that is not one of ours."""
+MODEL_CHOICE = "controller.system"
+"""Chooses one of our controllers: nothing is left out where another FMU takes its place."""
 Files = Mapping[str, Path]
 """FmuInstance -> FMU of somebody else's."""
 LogCallback = Callable[[str, int, str], None]
@@ -151,12 +153,13 @@ def undriven(system: "ElaboratedSystem", foreign: ImportedFmus, scenario: Scenar
 
 
 def bind_parameters(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:
-    """Return the scenario that leaves out the parameters that a foreign FMU does not have, and their names."""
+    """Return the scenario that leaves out the parameters that a foreign FMU does not have, and the names to report."""
     ignored: list[str] = []
     for instance, items in own.items():
         known = {item.name for item in items}
         ignored += [f"{instance}.{name}" for name in scenario.parameters_of(instance) if name not in known]
-    return scenario.model_copy(update={"unsupported_parameters": ignored}), ignored
+    bound = scenario.model_copy(update={"unsupported_parameters": ignored})
+    return bound, [name for name in ignored if name != MODEL_CHOICE]
 
 
 def sha256_of(path: Path) -> str:

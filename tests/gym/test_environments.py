@@ -80,7 +80,7 @@ def is_same(one: Any, other: Any) -> bool:
     "name", ["apa/Parallel-v0", "apa/Perpendicular-v0", "apa/World-v0", "apa/TPCAP-v0", "apa/ParkBench-v0"]
 )
 def test_the_checker_of_gymnasium_finds_nothing(name: str, case: Path, parkbench_scene: Path) -> None:
-    files = {"apa/TPCAP-v0": [case], "apa/ParkBench-v0": [parkbench_scene]}
+    files = {"apa/TPCAP-v0": [case.parent], "apa/ParkBench-v0": [parkbench_scene]}
     given: dict[str, Any] = {"files": files[name]} if name in files else {}
     env = gymnasium.make(name, render_mode="rgb_array", body="kinematic", **given)
     check_env(env.unwrapped)
@@ -357,6 +357,7 @@ def test_a_video_is_as_fast_as_the_car() -> None:
         ({"files": ["a.csv"]}, "files"),
         ({"scenes": "tpcap"}, "files"),
         ({"scenes": "tpcap", "files": ["none.csv"]}, "none.csv"),
+        ({"scenes": "tpcap", "files": [Path(__file__).parent]}, "no case"),
         ({"render_mode": "human"}, "render_mode"),
         ({"peddals": True}, "pedals"),
     ],

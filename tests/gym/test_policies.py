@@ -125,6 +125,8 @@ def test_systems_are_ranked_on_the_same_scenes(policy: Path, capsys: pytest.Capt
     assert main([*asked, "--body", "kinematic"]) == 0
     lines = capsys.readouterr().out.splitlines()
     rows = [line.split() for line in lines if line.startswith(" apa/")]
+    assert lines[1].split() == ["environment", "system", "scenes", "parked", "95", "%", "contacts", "median", "time"]
+    assert all(row[-1] == "s" or row[3] == "0" for row in rows), "no time without a car that has parked"
     assert sorted((row[0], row[1], row[2]) for row in rows) == [
         (scenes, system, "3")
         for scenes in ("apa/Parallel-v0", "apa/Perpendicular-v0")

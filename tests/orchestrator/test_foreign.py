@@ -34,7 +34,8 @@ def test_units_and_variability_that_are_not_said_are_no_mistake(
     assert summary["final"]["x"] < -5.0
     assert summary["final"]["steering_wheel_angle"] == pytest.approx(4.0, abs=0.01)
     assert "controller says no unit of measured_speed, steering_wheel_request" in captured.err
-    assert "parameters that the FMU does not have are left out: controller.system" in captured.err
+    assert "parameters that the FMU does not have are left out: 43 of controller.car, " in captured.err
+    assert "controller.system" not in captured.err
 
 
 def test_its_own_parameters_are_told_from_those_nobody_has(
@@ -155,5 +156,5 @@ def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, caps
     assert suite.get("timestamp") == about["when"]
     reported: Any = {item.get("name"): item.get("value") for item in suite.iter("property")}
     assert {key: reported[key] for key in about} == about
-    assert reported["left out"].startswith("controller.system, ")
+    assert reported["left out"].startswith("controller.car.wheelbase, ")
     assert all(html.escape(text) in page for text in about.values())

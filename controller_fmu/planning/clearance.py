@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import PlannedCar, Task, drive, fastest
+from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 SIGHT = 1.0
@@ -89,13 +90,13 @@ class Sweep(NamedTuple):
 
 def free_way(store: PlanStore, pose: Pose, direction: float, curvature: float, longest: float, task: Task) -> float:
     """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
-    return sweep(store, pose, clearance(store, pose, task) - task.margin, direction, curvature, longest, task).way
+    return sweep(store, pose, clearance(store, pose, task) - task.margin, direction * longest, curvature, task).way
 
 
-def sweep(
-    store: PlanStore, pose: Pose, gap: float, direction: float, curvature: float, longest: float, task: Task
-) -> Sweep:
-    """Drive along an arc, at most ``longest`` [m], from a pose whose clearance beyond the margin [m] is ``gap``."""
+def sweep(store: PlanStore, pose: Pose, gap: float, most: float, curvature: float, task: Task) -> Sweep:
+    """Drive along an arc, at most ``most`` [m] (reverse negative); at ``pose`` it has ``gap`` [m] beyond the margin."""
+    direction = sign(most)
+    longest = abs(most)
     rate = fastest(task.car, curvature)
     least = LEAST_STEP if LEAST_STEP * rate < task.margin else task.margin / rate
     way = 0.0

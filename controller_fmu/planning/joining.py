@@ -12,7 +12,6 @@ from controller_fmu.planning.plan_store import (
 )
 from controller_fmu.planning.task import Task, drive
 from controller_fmu.planning.tree_store import put_best
-from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 LONGEST = 10.0
@@ -89,7 +88,7 @@ def is_word_free(store: PlanStore, word: int, pose: Pose, task: Task) -> bool:
         k = (rest % 3 - 1) * task.car.curvature
         rest = rest // 3
         if way != 0.0:
-            driven = sweep(store, pose, gap, sign(way), k, abs(way), task)
+            driven = sweep(store, pose, gap, way, k, task)
             if driven.way < abs(way):
                 return False
             gap = driven.gap

@@ -394,7 +394,7 @@ def _is_free(store: PlanStore, task: Task) -> bool:
     gap = clearance(store, _begin(store, 0), task) - task.margin
     for number in range(store.mark[PIECE_COUNT]):
         way = store.piece_way[number]
-        driven = sweep(store, _begin(store, number), gap, sign(way), store.piece_k[number], abs(way), task)
+        driven = sweep(store, _begin(store, number), gap, way, store.piece_k[number], task)
         if driven.way < abs(way):
             return False
         gap = driven.gap

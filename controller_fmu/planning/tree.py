@@ -72,7 +72,7 @@ def begin_tree(store: PlanStore, task: Task) -> None:
         for turn in range(3):
             k = (turn - 1) * task.car.curvature
             longest = 60.0 if turn == 1 else TWO_PI / abs(k)
-            free = sweep(store, task.target, gap, 2.0 * gear - 1.0, k, longest, task)
+            free = sweep(store, task.target, gap, (2.0 * gear - 1.0) * longest, k, task)
             put_measure(store, FREE_AT_TARGET + 3 * gear + turn, free.way)
     offer(store, Child(task.root, 0.0, 0.0, 0.0, NONE), task)
 
@@ -195,7 +195,7 @@ def look_around(store: PlanStore, pose: Pose, task: Task) -> None:
     for gear in range(2):
         for turn in range(5):
             k = 0.5 * (turn - 2) * task.car.curvature
-            free = sweep(store, pose, gap, 2.0 * gear - 1.0, k, LONGEST, task)
+            free = sweep(store, pose, gap, (2.0 * gear - 1.0) * LONGEST, k, task)
             put_measure(store, FREE_AT_NODE + 5 * gear + turn, free.way)
 
 

@@ -73,11 +73,12 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYST
 
 def scenario(system: int = APA_SYSTEM) -> Scenario:
     """Return what all runs share; the system is told neither slot nor target."""
+    searching = SYSTEMS[system].searching if system in SYSTEMS else {}
     return Scenario(
         name="apa-world",
         stop_time=STOP_TIME,
         vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
-        controller={"system": system, **SYSTEMS[system].searching},
+        controller={"system": system, **searching},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)
             for number in range(1, SENSOR_COUNT + 1)

@@ -2,7 +2,7 @@
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import ApaSystemParams, Longitudinal
+from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import Alarm, ApaOutput, ApaSignals, Family, OfferedSlot, PlannedMove
@@ -12,6 +12,7 @@ from controller_fmu.apa.ways.move import Piece
 from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, TURN
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenTask
+from controller_fmu.common.params import Longitudinal
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import PlannedPiece
 from modelkit.vocabulary import Pose, Prompt

@@ -5,7 +5,7 @@ from math import pi
 from typing import Annotated, NamedTuple, Protocol
 
 from controller_fmu.apa.slot import Slot
-from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.common.params import LimitParams, Longitudinal, ThresholdParams
 from controller_fmu.interface import (
     AssumedCar,
     Limits,
@@ -18,15 +18,6 @@ from modelkit.signal import Role, Signal, Subset
 
 HOUSE = "project default; the source states none"
 SOURCE = "APA function requirements"
-
-
-class Longitudinal(IntEnum):
-    """Who drives."""
-
-    OWN_SPEED = 0
-    """The controller asks for speed and brake."""
-    DRIVER = 1
-    """The driver drives as prompted."""
 
 
 class Wish(IntEnum):

@@ -18,7 +18,7 @@ from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.params import ApaSystemParams, Longitudinal
+from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, no_deeper, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
@@ -28,6 +28,7 @@ from controller_fmu.apa.ways.fit import closer, following, is_wide, margins_of, 
 from controller_fmu.apa.ways.move import length_of
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.common.chart import bit
+from controller_fmu.common.params import Longitudinal
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
 from controller_fmu.common.steering_wheel import wheel_request

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from controller_fmu.apa.hearing.mute import count_mute
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import ApaSystemParams, Longitudinal
+from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.signals import ApaInput
 from controller_fmu.common.driver_selection import ChosenTask
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved
+from controller_fmu.common.params import Longitudinal
 from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason
 from modelkit.maths import is_finite

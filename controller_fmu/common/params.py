@@ -1,11 +1,21 @@
 """What can be set of every system that parks: when a car stands or is lost, and how long anything may last."""
 
+from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 
 HOUSE = "project default; the source states none"
+
+
+class Longitudinal(IntEnum):
+    """Who drives."""
+
+    OWN_SPEED = 0
+    """The controller requests speed and brake."""
+    DRIVER = 1
+    """The driver drives as prompted."""
 
 
 class ThresholdParams(NamedTuple):

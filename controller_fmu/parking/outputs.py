@@ -5,7 +5,7 @@ from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.measurement.cycle import seconds
-from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.state import ParkingMemory
@@ -36,14 +36,16 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
     manual = state in (ParkingState.STANDBY, ParkingState.SEARCHING, ParkingState.CONFIRMING)
     steers = not over and not manual and state != ParkingState.PLANNING
     driving = state == ParkingState.DRIVING
+    by_driver = is_driver_driving(params)
+    brakes = memory.verdict.is_blocked or not (by_driver or driving)
     return ParkingOutput(
         steering_wheel_request=memory.steering_wheel_angle if steers else 0.0,
         steering_active=steers,
-        prompt=prompt_of(memory),
+        prompt=prompt_of(memory, params),
         advised_speed=params.slot.speed if state == ParkingState.SEARCHING else abs(memory.speed),
-        speed_control_active=not over and not manual,
-        speed_request=memory.speed if driving else 0.0,
-        brake_request=not driving and not manual and state != ParkingState.TAKEOVER,
+        speed_control_active=not over and not manual and not by_driver,
+        speed_request=memory.speed if driving and not by_driver else 0.0,
+        brake_request=(over or (brakes and not manual)) and state != ParkingState.TAKEOVER,
         phase=PHASE_OF_STATE[state],
         reason=memory.reason,
         manoeuvres=memory.progress.manoeuvres,
@@ -54,7 +56,7 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
     )
 
 
-def prompt_of(memory: ParkingMemory) -> int:
+def prompt_of(memory: ParkingMemory, params: ParkingParams) -> int:
     """Return the prompt to the driver."""
     state = memory.state
     if state == ParkingState.PARKED and memory.strategy == Strategy.PULL_OUT:
@@ -68,6 +70,12 @@ def prompt_of(memory: ParkingMemory) -> int:
             return Prompt.STOP
         begun = memory.search.distance > MOVED and memory.search.waited == 0
         return Prompt.SLOW_DOWN if begun else Prompt.FORWARD
+    if is_driver_driving(params) and state not in (ParkingState.STANDBY, ParkingState.TAKEOVER):
+        if state != ParkingState.DRIVING:
+            return Prompt.STOP
+        if memory.clocks.waiting == 0:
+            return Prompt.SLOW_DOWN
+        return Prompt.FORWARD if memory.progress.direction > 0.0 else Prompt.REVERSE
     return Prompt.NONE
 
 

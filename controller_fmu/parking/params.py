@@ -4,7 +4,7 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
-from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.common.params import LimitParams, Longitudinal, ThresholdParams
 from controller_fmu.parking.following.params import FollowingParams
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, Vertex
 from controller_fmu.parking.map.params import MappingParams
@@ -78,3 +78,8 @@ class ParkingParams(NamedTuple):
         Role.TUNABLE,
         Group("vertices of known polygons where no slot is searched", (("m", 1e8), ("1", 1e6))),
     ] = (Vertex(),) * MAP_VERTICES
+
+
+def is_driver_driving(params: ParkingParams) -> bool:
+    """Return whether the driver drives as prompted, and the system only steers."""
+    return params.drive.longitudinal == Longitudinal.DRIVER

@@ -38,7 +38,7 @@ from controller_fmu.parking.monitor.fault_monitor import (
     is_taken_over,
 )
 from controller_fmu.parking.obstacle_map import REMEMBERED, remember_echoes
-from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.path_planning import (
     begin_plan,
     continue_plan,
@@ -120,15 +120,16 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     drives = state == ParkingState.DRIVING
     steers = state != ParkingState.PLANNING
     blocked = memory.verdict.is_blocked
-    expectation = ExpectedMotion(steers, moves, drives, blocked, memory.steering_wheel_angle)
+    expectation = ExpectedMotion(steers, moves, drives, blocked, memory.steering_wheel_angle, params.monitor.over_speed)
     limit = params.limit
     if memory.strategy != Strategy.SLOT:
         limit = limit._replace(manoeuvres=max_manoeuvres(memory, params))
-    limits = FaultLimits(limit, params.car.steering.rate_limit, params.threshold.standstill)
+    rate = params.car.steering.rate_limit
+    limits = FaultLimits(limit, rate, params.threshold.standstill, params.monitor.over_speed_time)
     clocks = advance_clocks(memory.clocks, expectation, inputs, limits, dt_ns)
     reason = memory.reason
     if reason == Reason.NONE:
-        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limit)
+        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limits)
     if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
@@ -196,7 +197,7 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
         | bit(Condition.WANTS_OUT, wants_out and standing and inputs.apa_switch and has_readings)
         | bit(Condition.SWITCHED_ON, inputs.apa_switch and searches and not is_resumed and not wants_out)
         | bit(Condition.SWITCHED_OFF, searches and not inputs.apa_switch)
-        | bit(Condition.TAKEN_OVER, is_taken_over(memory.clocks, inputs))
+        | bit(Condition.TAKEN_OVER, is_taken_over(memory.clocks, inputs, is_driver_driving(params)))
         | bit(Condition.FAULT, memory.reason != Reason.NONE and (is_out or memory.state != ParkingState.CONFIRMING))
         | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
         | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
@@ -223,7 +224,8 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     blocked = memory.verdict.is_blocked
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
-    stop = stopping_distance(abs(speed), params.drive.brake_delay, params.drive.brake_deceleration)
+    delay = params.drive.driver_reaction if is_driver_driving(params) else params.drive.brake_delay
+    stop = stopping_distance(abs(speed), delay, params.drive.brake_deceleration)
     lost = abs(progress.lateral_error) > params.monitor.corridor
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait

@@ -6,9 +6,9 @@ import pytest
 
 from controller_fmu.apa import watch as apa
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common import monitor
 from controller_fmu.common.monitor import Command
+from controller_fmu.common.params import Longitudinal
 from controller_fmu.common.phases import PhaseExpectation
 from controller_fmu.common.steering_monitor import SteeringMonitorState
 from controller_fmu.interface import Reason

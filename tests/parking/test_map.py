@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import is_free
 from controller_fmu.parking.map.landmark import (
     LANDMARKS,
@@ -195,3 +196,16 @@ def test_a_side_does_not_go_on_where_the_sensor_measures_through() -> None:
     unknown = expected_range(landmarks, sensor, kerb, 0.0, PARAMS)
     assert unknown.distance == pytest.approx(1.2, abs=0.1), "it may go on before the kerb"
     assert expected_range(landmarks, sensor, kerb, 1.8, PARAMS) == kerb
+
+
+@pytest.mark.parametrize(("confirmations", "silent"), [(FACING_ECHOES, False), (2 * FACING_ECHOES, True)])
+def test_who_stood_before_the_bumper_and_left_proves_no_sensor_silent(confirmations: int, silent: bool) -> None:
+    """A surface 1 m behind the car that one of two sensors does not detect."""
+    mount = CAR.ultrasonic.mounts[5]
+    surface = Landmark(LandmarkType.SEGMENT, mount.x - 1.0, mount.y, math.pi / 2, xx=1e-4, yy=1e-4, start=-2.0, end=2.0)
+    known = (surface._replace(confirmations=confirmations), *(Landmark(),) * (LANDMARKS - 1))
+    local_map = LandmarkMap(landmarks=known, begun=True)
+    for _ in range(MISSED_ECHOES):
+        readings = tuple(CAR.ultrasonic.max_range if number == 5 else 1.0 for number in range(12))
+        local_map = update_map(local_map, readings, Pose(), CAR.ultrasonic, PARAMS)
+    assert (local_map.missed.counts[5] == MISSED_ECHOES) == silent

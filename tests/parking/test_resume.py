@@ -38,7 +38,11 @@ PULLED = SteeringMonitorState(request=1.0, angle=0.5, away_ns=SECOND // 4)
     ],
 )
 def test_pedal_gear_and_wheel_are_a_takeover(inputs: ParkingSystemInput, clocks: FaultClocks, taken: bool) -> None:
-    assert is_taken_over(clocks, inputs) == taken
+    assert is_taken_over(clocks, inputs, False) == taken
+
+
+def test_a_driver_who_drives_as_prompted_brakes_without_taking_over() -> None:
+    assert not is_taken_over(FaultClocks(running=SECOND), ParkingSystemInput(brake_pedal=0.5), True)
 
 
 def switched_off_after(state: ParkingState, direction: float) -> ParkingMemory:

@@ -13,7 +13,8 @@ from controller_fmu.parking.params import ParkingParams, ParkingSystem
 from modelkit.variables import variables
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.drive import drive
 
@@ -32,6 +33,8 @@ OTHERWISE = frozenset(
 """Those that do not end as they are meant to: they need what the system does not have yet, or go wrong."""
 ENDS_DIFFERENTLY = {"apa-external-slot-nose-in": "parked"}
 """What the system can do and `apa` cannot."""
+SAME = {"apa.drive.longitudinal": "drive.longitudinal", "apa.search.wish": "slot.wanted"}
+"""Parameters of `apa` that this system has at another place."""
 AS_MEANT = tuple(name for name in NAMES if name not in OTHERWISE)
 
 
@@ -44,15 +47,22 @@ class Ended(NamedTuple):
     contact: bool
 
 
+def of_standard(scenario: Scenario) -> list[Requirement]:
+    """Return the requirements of a scenario that is meant to end otherwise than parked, as far as GB/T has them."""
+    meant = scenario.expected_outcome == "not_parked"
+    return [item for item in scenario.requirements if meant and item.source == "GB/T 41630"]
+
+
 def ended(name: str, folder: Path) -> Ended:
     """Return how a scenario ends with this system instead of its own."""
     scenario = load_scenario(name)
     known = {variable.name for variable in variables(ParkingParams)}
-    kept = {key: value for key, value in scenario.controller.items() if key in known}
+    named = {SAME.get(key, key): value for key, value in scenario.controller.items()}
+    kept = {key: value for key, value in named.items() if key in known}
     parked = scenario.expected_outcome in ("parked", "finished")
     update = {
         "controller": {**kept, "system": int(ParkingSystem.PARKING)},
-        "requirements": [*library_requirements("valet-slot" if parked else "no-contact")],
+        "requirements": [*library_requirements("valet-slot" if parked else "no-contact"), *of_standard(scenario)],
     }
     scenario = scenario.model_copy(update=update)
     try:

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
@@ -29,13 +30,16 @@ from tests.parking.simulated_pass import CAR, drive_past
 OUTLINE = vehicle_outline(CAR, 0.95)
 
 
-def slot_after(boxes: list[Box], seed: int, end: float, lateral: float = 1.0) -> SlotCandidate:
+def slot_after(
+    boxes: list[Box], seed: int, end: float, lateral: float = 1.0, wanted: SlotKind = SlotKind.NONE
+) -> SlotCandidate:
     local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
     start = Pose(-9.0, CAR.width / 2 + lateral, 0.0)
     for _, pose, readings in drive_past(boxes, start, end + 9.0, seed):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
     row = find_row(local_map.landmarks, pose, -1.0, params)
-    return find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, SlotParams(), params)
+    slot = SlotParams(wanted=wanted)
+    return find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, slot, params)
 
 
 def bays(width: float, empty: int, cars: int = 2) -> list[Box]:
@@ -66,6 +70,20 @@ def test_a_gap_between_cars_along_the_road_is_a_parallel_slot() -> None:
     slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(8.4, -0.9, 0.0, 4.4, 1.8), kerb], 3, 5.5)
     assert (slot.type, slot.reason) == (SlotType.PARALLEL, Reason.NONE)
     assert math.degrees(goal_pose(slot, OUTLINE, SlotParams()).heading) == pytest.approx(0.0, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "kind", "reason"),
+    [
+        (SlotKind.NONE, SlotType.PARALLEL, Reason.SLOT_TOO_SHORT),
+        (SlotKind.PARALLEL, SlotType.PARALLEL, Reason.SLOT_TOO_SHORT),
+        (SlotKind.TAIL_IN, SlotType.PERPENDICULAR, Reason.NONE),
+    ],
+)
+def test_between_walls_as_long_as_cars_the_driver_decides(wanted: SlotKind, kind: SlotType, reason: Reason) -> None:
+    walls = [Box(-2.0, -2.5, 0.0, 4.0, 5.0), Box(5.2, -2.5, 0.0, 4.0, 5.0), Box(1.6, -4.8, 0.0, 3.2, 0.4)]
+    slot = slot_after(walls, 1, 5.0, wanted=wanted)
+    assert (slot.type, slot.reason) == (kind, reason)
 
 
 def test_a_gap_that_is_too_short_is_rejected() -> None:

@@ -2,8 +2,9 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.params import Longitudinal
 from modelkit.car import Car
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 
 HOUSE = "project default; the source states none"
 RATE_FRACTION = 0.9
@@ -17,6 +18,7 @@ START_ACCELERATION = 1.0
 class FollowingParams(NamedTuple):
     """How the path is driven and tracked."""
 
+    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal), Role.FIXED] = Longitudinal.OWN_SPEED
     k1: Annotated[float, Signal("1/m2", "tracking gain of the lateral error", 0.0, 100.0, HOUSE)] = 2.0
     k2: Annotated[float, Signal("1/m", "tracking gain of the heading error", 0.0, 100.0, HOUSE)] = 2.4
     speed: Annotated[float, Signal("m/s", "largest speed", 0.1, 3.0, HOUSE)] = 0.8
@@ -24,6 +26,7 @@ class FollowingParams(NamedTuple):
     deceleration: Annotated[float, Signal("m/s2", "planned towards a stop", 0.1, 5.0, HOUSE)] = 0.5
     brake_deceleration: Annotated[float, Signal("m/s2", "when braking to standstill", 0.1, 10.0, HOUSE)] = 2.0
     brake_delay: Annotated[float, Signal("s", "from a brake request to its effect", 0.0, 2.0, HOUSE)] = 0.03
+    driver_reaction: Annotated[float, Signal("s", "from a prompt to the driver's brake", 0.0, 5.0, HOUSE)] = 0.3
     rolling_offset: Annotated[
         float, Signal("m", "offset from the path for steering while rolling; 0: at standstill", 0.0, 0.2, HOUSE)
     ] = 0.02

@@ -13,6 +13,7 @@ from controller_fmu.parking.map.chain_update import (
     next_chain,
 )
 from controller_fmu.parking.map.echo_chain import EchoChain
+from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
@@ -152,7 +153,8 @@ def expected_range(
 def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map with those landmarks contradicted that had to be detected before this echo, or at all.
 
-    A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more.
+    A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more. But a
+    surface that came before the bumpers may have been a pedestrian, who left: it proves no sensor silent.
     """
     sensor = measurement.sensor
     is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
@@ -165,7 +167,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
             if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
-                is_missed = is_missed or (not is_echo and is_confirmed(landmark, params))
+                is_missed = is_missed or (not is_echo and landmark.confirmations > FACING_ECHOES)
                 if is_credible:
                     after = contradict(landmark, predict_range(sensor, landmark), params)
             local_map = local_map._replace(

@@ -52,6 +52,8 @@ class ExpectedMotion(NamedTuple):
     """The monitor keeps it standing."""
     steering_wheel_angle: float
     """[rad]"""
+    max_speed: float
+    """Largest speed [m/s]."""
 
 
 class FaultClocks(NamedTuple):
@@ -61,6 +63,7 @@ class FaultClocks(NamedTuple):
     stopping: int = 0
     frozen: int = 0
     blocked: int = 0
+    fast: int = 0
     running: int = 0
     steering: SteeringMonitorState = SteeringMonitorState()
     pose: Pose = Pose()
@@ -72,6 +75,8 @@ class FaultLimits(NamedTuple):
     limit: LimitParams
     steering_rate: float
     standstill: float
+    over_speed_time: float
+    """[s]"""
 
 
 def advance_clocks(
@@ -93,16 +98,20 @@ def advance_clocks(
         stopping=clocks.stopping + dt_ns if not still and not expectation.moves else 0,
         frozen=clocks.frozen + dt_ns if is_unmoved(inputs.odometry, clocks.pose, speed, dt_ns) else 0,
         blocked=blocked,
+        fast=clocks.fast + dt_ns if abs(speed) > expectation.max_speed else 0,
         running=clocks.running + dt_ns,
         steering=steering,
         pose=inputs.odometry,
     )
 
 
-def is_taken_over(clocks: FaultClocks, inputs: DriverControls) -> bool:
-    """Return whether the driver has taken over: by signal, brake pedal, gear selector or steering wheel."""
+def is_taken_over(clocks: FaultClocks, inputs: DriverControls, driver_drives: bool) -> bool:
+    """Return whether the driver has taken over: by signal, gear selector, steering wheel, or brake pedal.
+
+    A driver who drives as prompted brakes by the pedal, too.
+    """
     is_settled = seconds(clocks.running) > SETTLING_TIME
-    is_braked = inputs.brake_pedal > MAX_PEDAL
+    is_braked = inputs.brake_pedal > MAX_PEDAL and not driver_drives
     is_out_of_gear = inputs.gear in (Gear.PARK, Gear.NEUTRAL) and abs(inputs.measured_speed) > MAX_SHIFT_SPEED
     wheel = clocks.steering
     is_pulled = abs(wheel.request - wheel.angle) > PULL_ANGLE and seconds(wheel.away_ns) > PULL_TIME
@@ -117,14 +126,17 @@ def input_fault(inputs: SensedWithFault) -> int:
 
 
 def fault_reason(
-    clocks: FaultClocks, inputs: SensedWithFault, drives: bool, manoeuvres: int, limit: LimitParams
+    clocks: FaultClocks, inputs: SensedWithFault, drives: bool, manoeuvres: int, limits: FaultLimits
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     fault = input_fault(inputs)
     if fault != Reason.NONE:
         return fault
+    limit = limits.limit
     if seconds(clocks.frozen) > limit.pose_frozen:
         return Reason.POSE_FROZEN
+    if seconds(clocks.fast) > limits.over_speed_time:
+        return Reason.OVER_SPEED
     if has_failed(clocks.steering, limit.steering_fault_debounce):
         return Reason.STEERING_FAULT
     if seconds(clocks.stopping) > limit.stopping:

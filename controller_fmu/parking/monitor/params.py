@@ -19,4 +19,6 @@ class MonitorParams(NamedTuple):
     ] = 0.2
     corridor: Annotated[float, Signal("m", "lateral error: stop and plan again", 0.01, 5.0, HOUSE)] = 0.1
     corridor_heading: Annotated[float, Signal("rad", "heading error: the same", 0.01, 1.5, HOUSE)] = 0.12
+    over_speed: Annotated[float, Signal("m/s", "largest speed while parking: 5 km/h", 0.1, 10.0, HOUSE)] = 5.0 / 3.6
+    over_speed_time: Annotated[float, Signal("s", "for longer than this", 0.0, 10.0, HOUSE)] = 0.3
     wait: Annotated[float, Signal("s", "wait for an obstacle to go away", 0.0, 600.0, HOUSE)] = 10.0

@@ -126,6 +126,7 @@ def _candidate(
     parallel = ratio > DECIDED or (ratio > -DECIDED and fits_parallel and not fits_perpendicular)
     parallel = parallel or (abs(ratio) <= DECIDED and fits_parallel)
     parallel = parallel and row.slope == 0.0
+    parallel = parallel if slot.wanted == SlotKind.NONE else slot.wanted == SlotKind.PARALLEL
     fits = fits_parallel if parallel else fits_perpendicular
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
     reason = Reason.NONE
@@ -145,7 +146,9 @@ def _as_driveway(
     """Return a gap too short to park along as a perpendicular slot where it is wide enough and observed deep."""
     width = candidate.ahead.start - candidate.behind.end
     too_short = candidate.type == SlotType.PARALLEL and candidate.reason == Reason.SLOT_TOO_SHORT
-    if not too_short or width < 2.0 * outline.half_width + slot.room_across or candidate.depth < MAX_PARALLEL_DEPTH:
+    is_wide = width >= 2.0 * outline.half_width + slot.room_across
+    is_possible = too_short and is_wide and slot.wanted != SlotKind.PARALLEL
+    if not is_possible or candidate.depth < MAX_PARALLEL_DEPTH:
         return candidate
     count = 0
     for fraction in FREE_FRACTIONS:

@@ -22,8 +22,8 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         shift = 0.0
         if left < params.kerb_min:
             shift = left - params.kerb_min
-        elif left > params.kerb_max and left < params.kerb_max + params.kerb_shift:
-            shift = left - params.kerb_max
+        elif left > params.kerb_max and left < params.kerb_max + params.stand_out:
+            shift = min(left - params.kerb_max, params.kerb_shift)
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:

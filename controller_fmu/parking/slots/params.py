@@ -13,7 +13,7 @@ class SlotParams(NamedTuple):
     """What a slot must be, and where the vehicle stands in it."""
 
     wanted: Annotated[
-        int, Signal("1", "how to stand in it; none: tail in, but nose in where it leads on", states=SlotKind)
+        int, Signal("1", "how to stand in it; none: as the row tells, tail in unless it leads on", states=SlotKind)
     ] = SlotKind.NONE
     room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
     room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
@@ -24,8 +24,9 @@ class SlotParams(NamedTuple):
     kerb_min: Annotated[float, Signal("m", "least distance to a kerb beside", 0.05, 1.0, GBT)] = 0.15
     kerb_max: Annotated[float, Signal("m", "largest distance to a kerb beside", 0.05, 1.0, GBT)] = 0.3
     kerb_shift: Annotated[
-        float, Signal("m", "out of the neighbours' line towards a kerb at most, if that is enough", 0.0, 1.0, HOUSE)
-    ] = 0.05
+        float,
+        Signal("m", "towards a kerb out of the neighbours' line; GB/T 0.15 m less errors", 0.0, 1.0, HOUSE),
+    ] = 0.1
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
     distance: Annotated[float, Signal("m", "longest distance searched", 1.0, 1000.0, HOUSE)] = 60.0
     confirm_time: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0

@@ -1,4 +1,4 @@
-"""A driver who drives as prompted while the system steers: prompts, requests, over-speed."""
+"""The driver controls the speed as prompted, the system steers: prompts, requests, over-speed."""
 
 import pytest
 

@@ -88,4 +88,4 @@ def test_a_driver_who_wants_out_is_asked_to_confirm_and_to_take_over(speed: floa
         assert not conditions_of(memory, inputs, params) >> Condition.DRIVEN_ON & 1
         failed = memory._replace(reason=3)
         assert next_parking_state(failed.state, conditions_of(failed, inputs, params)) == ParkingState.FAILED
-        assert prompt_of(memory._replace(state=ParkingState.PARKED)) == Prompt.TAKE_OVER
+        assert prompt_of(memory._replace(state=ParkingState.PARKED), params) == Prompt.TAKE_OVER

@@ -18,7 +18,9 @@ START_ACCELERATION = 1.0
 class FollowingParams(NamedTuple):
     """How the path is driven and tracked."""
 
-    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal), Role.FIXED] = Longitudinal.OWN_SPEED
+    longitudinal: Annotated[int, Signal("1", "who controls the speed", states=Longitudinal), Role.FIXED] = (
+        Longitudinal.OWN_SPEED
+    )
     k1: Annotated[float, Signal("1/m2", "tracking gain of the lateral error", 0.0, 100.0, HOUSE)] = 2.0
     k2: Annotated[float, Signal("1/m", "tracking gain of the heading error", 0.0, 100.0, HOUSE)] = 2.4
     speed: Annotated[float, Signal("m/s", "largest speed", 0.1, 3.0, HOUSE)] = 0.8

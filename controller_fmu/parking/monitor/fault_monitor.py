@@ -108,7 +108,7 @@ def advance_clocks(
 def is_taken_over(clocks: FaultClocks, inputs: DriverControls, driver_drives: bool) -> bool:
     """Return whether the driver has taken over: by signal, gear selector, steering wheel, or brake pedal.
 
-    A driver who drives as prompted brakes by the pedal, too.
+    Where the driver controls the speed as prompted, the pedal is none.
     """
     is_settled = seconds(clocks.running) > SETTLING_TIME
     is_braked = inputs.brake_pedal > MAX_PEDAL and not driver_drives

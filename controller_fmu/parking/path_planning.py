@@ -214,8 +214,8 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
 
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:
-    """Return how many manoeuvres are allowed: GB/T 41630 has one less for a perpendicular slot."""
-    if memory.strategy == Strategy.POSE:
+    """Return how many manoeuvres are allowed: into a slot those of GB/T 41630, one less if it is perpendicular."""
+    if memory.strategy != Strategy.SLOT:
         return params.plan.max_manoeuvres
     return params.limit.manoeuvres - (1 if memory.search.slot.type == SlotType.PERPENDICULAR else 0)
 
@@ -295,7 +295,7 @@ def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 def _with_plan(
     memory: ParkingMemory, obstacles: ObstacleMap, goal: Pose, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ParkingMemory:
-    """Return the memory with a request for a path to ``goal``; the last plan but one was the last that is made.
+    """Return the memory with a request for a path to ``goal``; after ``max_plans`` there is one a manoeuvre.
 
     A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself.
     """
@@ -306,7 +306,7 @@ def _with_plan(
     )
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
     memory = memory._replace(plan=plan)
-    if plan.plans > params.plan.max_plans:
+    if plan.plans > max(params.plan.max_plans, memory.progress.manoeuvres):
         return without_path(memory, Reason.LEFT_PATH, inputs, params)
     return memory
 

@@ -1,7 +1,8 @@
 """Out of a parallel slot: what the sensors measure at rest as landmarks, and a pose on the road beside the slot.
 
 A neighbour's bumper is measured at rest, its flank is not: it is taken to stand out of the row by ``MAX_STAND_OUT``
-more than the vehicle. Such landmarks are updated or contradicted on the way like all others.
+more than the vehicle. Where nothing is measured behind the row, it ends as far off: the way out is on the road's side.
+Such landmarks are updated or contradicted on the way like all others.
 """
 
 import math
@@ -81,7 +82,7 @@ def road_side(chosen: int) -> float:
 def with_neighbours(
     landmarks: tuple[Landmark, ...], box: FreeBox, side: float, pose: Pose, car: Car, params: MappingParams
 ) -> tuple[Landmark, ...]:
-    """Return the landmarks with the neighbours' bumpers and flanks and the kerb, as far as they are measured."""
+    """Return the landmarks with the neighbours' bumpers and flanks, as far as they are measured, and the row's end."""
     road = side * (0.5 * car.width + MAX_STAND_OUT)
     deep = road - side * CAR_WIDTH
     far = CAR_LENGTH + car.ultrasonic.max_range
@@ -94,9 +95,9 @@ def with_neighbours(
         landmarks = _insert(landmarks, _segment(Point(box.rear, deep), Point(box.rear, road), pose, params))
         landmarks = _insert(landmarks, _segment(Point(box.rear, road), Point(end, road), pose, params))
     kerb = box.right if side > 0.0 else box.left
-    if abs(kerb) < far:
-        landmarks = _insert(landmarks, _segment(Point(box.rear, kerb), Point(box.front, kerb), pose, params))
-    return landmarks
+    if abs(kerb) >= far:
+        kerb = -road
+    return _insert(landmarks, _segment(Point(box.rear, kerb), Point(box.front, kerb), pose, params))
 
 
 def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline) -> Pose:

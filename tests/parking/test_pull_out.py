@@ -11,6 +11,7 @@ from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkTyp
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.outputs import prompt_of
 from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.path_planning import max_manoeuvres
 from controller_fmu.parking.pull_out import (
     MAX_STAND_OUT,
     free_box,
@@ -89,3 +90,21 @@ def test_a_driver_who_wants_out_is_asked_to_confirm_and_to_take_over(speed: floa
         failed = memory._replace(reason=3)
         assert next_parking_state(failed.state, conditions_of(failed, inputs, params)) == ParkingState.FAILED
         assert prompt_of(memory._replace(state=ParkingState.PARKED), params) == Prompt.TAKE_OVER
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_behind_a_row_without_kerb_nothing_is_taken_for_free(side: float) -> None:
+    readings = (*BETWEEN_CARS[:8], 5.0, 5.0, 5.0, 5.0)
+    found = with_neighbours(NOWHERE, free_box(readings, CAR), side, Pose(), CAR, MappingParams())
+    along = (
+        landmark for landmark in found if landmark.type != LandmarkType.NONE and abs(math.sin(landmark.heading)) < 0.1
+    )
+    behind = [landmark for landmark in along if side * landmark.y < -0.5 * CAR.width]
+    assert [round(side * landmark.y, 6) for landmark in behind] == [-round(0.5 * CAR.width + MAX_STAND_OUT, 6)]
+
+
+def test_the_way_out_may_take_more_manoeuvres_than_the_way_in() -> None:
+    params = ParkingParams()
+    memory = ParkingMemory(strategy=Strategy.PULL_OUT)
+    assert max_manoeuvres(memory, params) == params.plan.max_manoeuvres > params.limit.manoeuvres
+    assert max_manoeuvres(memory._replace(strategy=Strategy.SLOT), params) == params.limit.manoeuvres

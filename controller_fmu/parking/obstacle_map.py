@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
-from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, VERTICES, ObstacleMap, Vertex
+from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex, next_index
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.predicted_range import range_in_map
+from controller_fmu.parking.measurement.predicted_range import range_to_polygons
 from controller_fmu.parking.measurement.sensor import SENSORS, SensorPose
 from controller_fmu.parking.monitor.collision_monitor import (
     EchoObstacle,
@@ -90,28 +90,9 @@ def obstacle_map(
             _landmark_vertex(landmarks[number // 2 if number < LANDMARK_VERTICES else 0], number, mapping)
             if number < LANDMARK_VERTICES
             else _quad_vertex(quads, echoes, slot, number - LANDMARK_VERTICES)
-            if number < LOCAL_VERTICES
-            else Vertex()
-            for number in range(VERTICES)
+            for number in range(LOCAL_VERTICES)
         )
     )
-
-
-def with_known_map(obstacles: ObstacleMap, known: tuple[Vertex, ...]) -> ObstacleMap:
-    """Return an obstacle map with the polygons of a map that is given behind its own."""
-    vertices = obstacles.vertices
-    return ObstacleMap(
-        tuple(
-            _numbered_on(known[max(number - LOCAL_VERTICES, 0)]) if number >= LOCAL_VERTICES else vertices[number]
-            for number in range(VERTICES)
-        ),
-        VERTICES,
-    )
-
-
-def _numbered_on(vertex: Vertex) -> Vertex:
-    """Return a vertex of a given map with a number that no other polygon has."""
-    return vertex._replace(polygon=vertex.polygon + LOCAL_VERTICES) if vertex.polygon > 0 else Vertex()
 
 
 def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -> bool:
@@ -119,15 +100,11 @@ def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -
     for point in (start_point(landmark), end_point(landmark)):
         is_near = False
         first = 0
-        for number in range(MAP_VERTICES):
+        for number in range(len(known)):
             if known[number].polygon > 0:
                 if number > 0 and known[number - 1].polygon != known[number].polygon:
                     first = number
-                last = (
-                    number + 1 >= MAP_VERTICES
-                    or known[min(number + 1, MAP_VERTICES - 1)].polygon != known[number].polygon
-                )
-                after = first if last else number + 1
+                after = next_index(known, number, first)
                 a = Point(known[number].x, known[number].y)
                 is_near = is_near or point_to_segment(point, a, Point(known[after].x, known[after].y)) < tolerance
         if not is_near:
@@ -296,7 +273,7 @@ def without_explained(
         math.sin(half_angle),
     )
     reach = echo.range + params.unexplained
-    return EchoObstacle() if range_in_map(sensor, obstacles, reach).distance < reach else echo
+    return EchoObstacle() if range_to_polygons(sensor, obstacles.vertices, reach).distance < reach else echo
 
 
 def remember_echoes(before: tuple[EchoObstacle, ...], echoes: tuple[EchoObstacle, ...]) -> tuple[EchoObstacle, ...]:

@@ -2,13 +2,23 @@
 
 from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
+from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
-from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
+from controller_fmu.parking.planning.planner import PathSegment
+from controller_fmu.parking.signals import (
+    MOVE_SEGMENTS,
+    DrivenMove,
+    MoveSegment,
+    ParkingOutput,
+    ParkingSignals,
+    SlotSignals,
+)
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_point
 from controller_fmu.parking.state import ParkingMemory
+from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
 
 PHASE_OF_STATE = (
@@ -99,7 +109,27 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
         slot=_slot_signals(memory.search.slot),
         offered=tuple(_slot_signals(memory.search.offered[number]) for number in range(MAX_OFFERS)),
         shown=memory.search.shown,
+        move=_current_move(memory.progress),
     )
+
+
+def _current_move(progress: PathProgress) -> DrivenMove:
+    """Return the segments from the one in hand up to the next change of direction."""
+    direction = sign(progress.path.segments[progress.segment].distance)
+    count = 0
+    for number in range(MOVE_SEGMENTS):
+        at = progress.segment + number
+        if count == number and at < progress.path.used and progress.path.segments[at].distance * direction > 0.0:
+            count = count + 1
+    pieces = tuple(
+        _move_segment(progress.path.segments[progress.segment + number]) if number < count else MoveSegment()
+        for number in range(MOVE_SEGMENTS)
+    )
+    return DrivenMove(progress.begin, int(direction), pieces)
+
+
+def _move_segment(segment: PathSegment) -> MoveSegment:
+    return MoveSegment(abs(segment.distance), segment.curvature, segment.curvature)
 
 
 def _slot_signals(slot: SlotCandidate) -> SlotSignals:

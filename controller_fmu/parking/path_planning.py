@@ -25,7 +25,6 @@ from controller_fmu.parking.obstacle_map import (
     echo_away_from_vehicle,
     is_on_map,
     obstacle_map,
-    with_known_map,
     without_explained,
     without_inside,
 )
@@ -37,6 +36,7 @@ from controller_fmu.parking.planning.planner import (
     continue_search,
     planned_path,
     search_status,
+    search_until,
 )
 from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
@@ -139,8 +139,11 @@ def continue_plan(
         return wait_for_change(memory, inputs, params)
     if memory.plan.steps == 0:
         memory = _with_request(memory, inputs, params)
+        if memory.plan.is_final:
+            return memory
     plan = memory.plan
-    count = continue_search(work, plan.obstacles, plan.request, plan.steps, params.plan.steps_per_sample)
+    search_until(work, plan.obstacles, params.map, plan.request, plan.steps)
+    count = continue_search(work, plan.request, params.plan.steps_per_sample)
     memory = memory._replace(plan=plan._replace(steps=count))
     status = search_status(work)
     if status == PlanningStatus.PLANNING and count <= params.plan.max_steps:
@@ -275,7 +278,10 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
         goal = external_pose(inputs.external_slot, outline, pose)
     if not is_usable_slot(inputs.external_slot):
         return memory._replace(reason=Reason.BAD_INPUT)
-    return _with_plan(memory, with_known_map(local, params.map), goal, inputs, params)
+    final = params.final
+    is_there = is_near(pose, goal, final.position, final.position, final.heading)
+    memory = _with_plan(memory, local, goal, inputs, params)
+    return memory._replace(plan=memory.plan._replace(is_final=True)) if is_there else memory
 
 
 def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -301,9 +307,9 @@ def _with_plan(
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
-    request = PlanningRequest(
-        inputs.odometry, goal, outline, params.plan.margin, cusps, driving_dynamics(memory.strategy, params)
-    )
+    dynamics = driving_dynamics(memory.strategy, params)
+    has_map = memory.strategy == Strategy.POSE
+    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, dynamics, has_map)
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
     memory = memory._replace(plan=plan)
     if plan.plans > max(params.plan.max_plans, memory.progress.manoeuvres):
@@ -314,12 +320,12 @@ def _with_plan(
 def driving_dynamics(strategy: int, params: ParkingParams) -> DrivingDynamics:
     """Return how the vehicle drives a path; its rate is 0 where the wheel may not turn on the move.
 
-    Nor does a path into a slot that was found have transitions: its goal moves by what is measured on the way.
+    Nor does a path into or out of a slot have transitions: what is measured on the way moves its goal and obstacles.
     """
     steering = params.car.steering
     law = params.drive
     rate = 0.0
-    if law.rolling_offset > 0.0 and strategy != Strategy.SLOT:
+    if law.rolling_offset > 0.0 and strategy == Strategy.POSE:
         rate = RATE_FRACTION * steering.rate_limit / steering.ratio
     curvature = LOCK_FRACTION * largest_curvature(params.car)
     return DrivingDynamics(params.car.wheelbase, rate, curvature, law.speed, START_ACCELERATION, law.deceleration)

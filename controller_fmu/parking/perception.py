@@ -19,7 +19,12 @@ from controller_fmu.parking.map.facing_surface import (
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange, direction_of, range_in_map
+from controller_fmu.parking.measurement.predicted_range import (
+    EchoOrigin,
+    PredictedRange,
+    direction_of,
+    range_to_polygons,
+)
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
     ReadingStatus,
@@ -177,7 +182,10 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
         track = with_approach(before_track, track, static)
     if not is_echo or measured >= MAX_MONITORED_RANGE:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
-    planned = range_in_map(sensor, memory.plan.obstacles, sensors.max_range)
+    planned = range_to_polygons(sensor, memory.plan.obstacles.vertices, sensors.max_range)
+    if memory.plan.request.has_map:
+        mapped = range_to_polygons(sensor, params.map, sensors.max_range)
+        planned = mapped if mapped.distance < planned.distance else planned
     tolerance = params.monitor.unexplained
     expected = expected_range(perception.local_map.landmarks, sensor, planned, measured - tolerance, params.mapping)
     unexplained = measured < expected.distance - tolerance

@@ -28,6 +28,9 @@ from modelkit.vocabulary import (
     VehicleFaultShown,
 )
 
+MOVE_SEGMENTS = 12
+"""Segments of the path that the outputs show."""
+
 
 class ParkingSystemInput(NamedTuple):
     """From the vehicle and its driver."""
@@ -60,6 +63,22 @@ class SlotSignals(NamedTuple):
     depth: Annotated[float, Signal("m", "behind the neighbours' fronts; 50: unknown", 0.0)] = 0.0
 
 
+class MoveSegment(NamedTuple):
+    """A segment of the move being driven."""
+
+    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
+    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
+    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
+
+
+class DrivenMove(NamedTuple):
+    """The path up to the next change of direction."""
+
+    start: Annotated[Pose, Group("where the segment in hand begins")] = Pose()
+    direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
+    pieces: tuple[MoveSegment, ...] = (MoveSegment(),) * MOVE_SEGMENTS
+
+
 class ParkingSignals(NamedTuple):
     """Search, plan and drive."""
 
@@ -77,6 +96,7 @@ class ParkingSignals(NamedTuple):
     slot: SlotSignals = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
     shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
+    move: DrivenMove = DrivenMove()
 
 
 class ParkingOutput(NamedTuple):

@@ -13,14 +13,18 @@ from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.obstacle_map import is_on_map, with_known_map
+from controller_fmu.parking.obstacle_map import is_on_map
 from controller_fmu.parking.perception import chosen_number, with_offer
+from controller_fmu.parking.planning.planner import begin, is_for_request
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.planning.work import VERTEX_COUNT, PlanningWork
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.external import external_candidate, external_pose, has_passed_external
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow
 from modelkit.car import Car
+from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 0.95)
@@ -130,10 +134,16 @@ def test_the_polygons_of_a_map_stand_behind_those_of_the_landmarks() -> None:
     known = tuple(Vertex(x, y, 1) for x, y in corners) + (Vertex(),) * (MAP_VERTICES - 4)
     own = ObstacleMap()
     own = own._replace(vertices=(Vertex(9.0, 9.0, 1), *own.vertices[1:]))
-    whole = with_known_map(own, known)
-    assert whole.vertices[:LOCAL_VERTICES] == own.vertices[:LOCAL_VERTICES]
-    assert [(v.x, v.y) for v in whole.vertices[LOCAL_VERTICES : LOCAL_VERTICES + 5]] == [*corners, (0.0, 0.0)]
-    assert len({v.polygon for v in whole.vertices if v.polygon}) == 2
+    work, request = new_store(PlanningWork), PlanningRequest(has_map=True)
+    begin(work, own, known, request)
+    assert is_for_request(work, own, known, request)
+    assert not is_for_request(work, own, (Vertex(0.1, 0.0, 1), *known[1:]), request)
+    assert list(work.corner_x[:2]) == [9.0, 0.0]
+    whole = list(zip(work.corner_x, work.corner_y, work.corner_of, strict=True))
+    assert [v[:2] for v in whole[LOCAL_VERTICES : LOCAL_VERTICES + 5]] == [*corners, (0.0, 0.0)]
+    assert len({v[2] for v in whole if v[2]}) == 2
+    begin(work, own, known, request._replace(has_map=False))
+    assert work.counts[VERTEX_COUNT] == LOCAL_VERTICES
     sides = {y: is_on_map(wall(2.0, y, 3.0)[0], known, 0.2) for y in (0.1, 1.0, 1.9, 2.3)}
     assert sides == {0.1: True, 1.0: False, 1.9: True, 2.3: False}
     assert not is_on_map(wall(4.0, 0.0, 3.0)[0], known, 0.2), "half of it goes on beyond the polygon"

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
 from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
-from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
+from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point, predicted_range_to_segment
@@ -261,10 +261,10 @@ def test_a_remembered_echo_is_forgotten_once_the_map_explains_it() -> None:
     ux, uy = -math.cos(aside), math.sin(aside)
     echo = EchoObstacle(behind * ux, behind * uy, 0.0, True, True, ux, uy, behind)
     wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, 2.0, 1))
-    obstacles = ObstacleMap(wall + (Vertex(),) * (VERTICES - 2))
+    obstacles = ObstacleMap(wall + (Vertex(),) * (LOCAL_VERTICES - 2))
     params = MonitorParams()
     assert not without_explained(echo, obstacles, aside, params).is_present
     assert without_explained(echo, ObstacleMap(), aside, params) == echo
     aside_wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, -1.0, 1))
-    beside = ObstacleMap(aside_wall + (Vertex(),) * (VERTICES - 2))
+    beside = ObstacleMap(aside_wall + (Vertex(),) * (LOCAL_VERTICES - 2))
     assert without_explained(echo, beside, aside, params) == echo, "the sensor does not see it"

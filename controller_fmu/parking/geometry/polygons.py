@@ -7,9 +7,7 @@ from modelkit.signal import Signal
 LOCAL_VERTICES = 256
 """64 landmarks of two vertices, 32 quadrilaterals about a slot."""
 MAP_VERTICES = 360
-"""Vertices of the polygons of a given map, as many as the valet has."""
-VERTICES = LOCAL_VERTICES + MAP_VERTICES
-"""Capacity of an obstacle map."""
+"""Vertices of the polygons of a given map."""
 
 
 class Vertex(NamedTuple):
@@ -21,16 +19,14 @@ class Vertex(NamedTuple):
 
 
 class ObstacleMap(NamedTuple):
-    """Polygons, convex or not; one of two vertices is a line, one of a single vertex a point."""
+    """Polygons about the vehicle, convex or not; one of two vertices is a line, one of a single vertex a point."""
 
-    vertices: tuple[Vertex, ...] = (Vertex(),) * VERTICES
-    used: int = LOCAL_VERTICES
-    """Those behind are not; so many are where no map is given."""
+    vertices: tuple[Vertex, ...] = (Vertex(),) * LOCAL_VERTICES
 
 
-def next_index(obstacles: ObstacleMap, index: int, first: int) -> int:
+def next_index(vertices: tuple[Vertex, ...], index: int, first: int) -> int:
     """Return the vertex that the edge from ``index`` leads to; ``first`` is the first of its polygon."""
-    last = index + 1 >= VERTICES
+    last = index + 1 >= len(vertices)
     after = 0 if last else index + 1
-    goes_on = not last and obstacles.vertices[after].polygon == obstacles.vertices[index].polygon
+    goes_on = not last and vertices[after].polygon == vertices[index].polygon
     return after if goes_on else first

@@ -9,7 +9,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.polygons import ObstacleMap, next_index
+from controller_fmu.parking.geometry.polygons import Vertex, next_index
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from modelkit.geometry import NO_HIT, Point
 
@@ -118,7 +118,7 @@ def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> _InBeam:
     return _InBeam(low, high)
 
 
-def range_in_map(sensor: SensorPose, obstacles: ObstacleMap, max_range: float) -> PredictedRange:
+def range_to_polygons(sensor: SensorPose, vertices: tuple[Vertex, ...], max_range: float) -> PredictedRange:
     """Return the nearest point of all polygons in a sensor's view, at most ``max_range`` [m] away, else on its axis."""
     nearest = PredictedRange(
         max_range,
@@ -127,12 +127,12 @@ def range_in_map(sensor: SensorPose, obstacles: ObstacleMap, max_range: float) -
         sensor.y + max_range * sensor.axis_y,
     )
     first = 0
-    for number in range(obstacles.used):
-        a = obstacles.vertices[number]
+    for number in range(len(vertices)):
+        a = vertices[number]
         if a.polygon > 0:
-            if number > 0 and obstacles.vertices[number - 1].polygon != a.polygon:
+            if number > 0 and vertices[number - 1].polygon != a.polygon:
                 first = number
-            b = obstacles.vertices[next_index(obstacles, number, first)]
+            b = vertices[next_index(vertices, number, first)]
             predicted = predicted_range_to_segment(sensor, Point(a.x, a.y), Point(b.x, b.y))
             if predicted.distance < nearest.distance:
                 nearest = predicted

@@ -8,8 +8,6 @@ from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.work import (
     BUCKETS,
-    EDGE_ITEMS,
-    EDGES,
     NONE,
     VERTEX_COUNT,
     PlanningWork,
@@ -62,8 +60,8 @@ def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: S
                 leave = t if t < leave else leave
     if enter > leave:
         return count
-    if count >= EDGES:
-        return EDGES + 1
+    if count >= len(work.edge_x1):
+        return count + 1
     set_edge(work, count, _onward(start, enter, dx, dy), _onward(start, leave, dx, dy))
     return count + 1
 
@@ -83,7 +81,7 @@ def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: Vehic
     for cell in range(cells + 1):
         total += work.cell_start[cell]
         set_cell_start(work, cell, total)
-    if total > EDGE_ITEMS:
+    if total > len(work.cell_edge):
         return False
     for edge in range(edges):
         _index_edge(work, edge, region, car, True)
@@ -231,10 +229,15 @@ def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
     """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the search region."""
     count = 0
     for vertex in range(work.counts[VERTEX_COUNT]):
-        if work.corner_of[vertex] > 0:
-            after = next_corner(work, vertex)
+        after = next_corner(work, vertex)
+        if work.corner_of[vertex] > 0 and not _leads_back(work, vertex, after):
             count = add_edge(work, count, _seen_from(origin, work, vertex), _seen_from(origin, work, after), region)
     return count
+
+
+def _leads_back(work: PlanningWork, vertex: int, after: int) -> bool:
+    """Return whether the edge from ``vertex`` is that of a line, a polygon of two vertices, once more."""
+    return after == vertex - 1 and (after == 0 or work.corner_of[after - 1] != work.corner_of[vertex])
 
 
 def _seen_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:

@@ -7,7 +7,7 @@ another request or of later steps, all is done anew from the first step.
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.polygons import ObstacleMap
+from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.planning.clearance_margin import measure_clearance
 from controller_fmu.parking.planning.collision import clearance
 from controller_fmu.parking.planning.grids import (
@@ -37,7 +37,6 @@ from controller_fmu.parking.planning.work import (
     BEST_STAGE,
     COUNT,
     EDGE_COUNT,
-    EDGES,
     GOAL_TIGHTER,
     MAX_CUSPS,
     MEASURED_SEGMENTS,
@@ -109,17 +108,18 @@ class PlannedPath(NamedTuple):
     segments: tuple[PathSegment, ...] = (PathSegment(),) * MAX_SEGMENTS
 
 
-def search_until(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest, count: int) -> None:
-    """Bring the search for a path to ``count`` steps."""
-    if work.counts[COUNT] > count or not is_for_request(work, obstacles, request):
-        begin(work, obstacles, request)
+def search_until(
+    work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest, count: int
+) -> None:
+    """Bring the search for a path among ``local`` and, if requested, ``known`` polygons to ``count`` steps."""
+    if work.counts[COUNT] > count or not is_for_request(work, local, known, request):
+        begin(work, local, known, request)
     for _ in range(work.counts[COUNT], count):
         step(work, request)
 
 
-def continue_search(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest, count: int, most: int) -> int:
-    """Bring the search to ``count`` steps and on by at most ``max_expansions``, fewer where one is long."""
-    search_until(work, obstacles, request, count)
+def continue_search(work: PlanningWork, request: PlanningRequest, most: int) -> int:
+    """Bring the search on by at most ``most`` steps, fewer where one is long; returns their count so far."""
     for number in range(most):
         phase = work.counts[PHASE]
         is_long = phase < PlanningPhase.SEARCH
@@ -136,16 +136,17 @@ def search_status(work: PlanningWork) -> int:
     return work.counts[STATUS]
 
 
-def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> bool:
-    """Return whether the work arrays holds the search for this request."""
+def is_for_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> bool:
+    """Return whether the work arrays hold the search for this request."""
     numbers = _numbers(request)
     for which in range(REQUEST_SIZE):
         if work.requested[which] != numbers[which]:
             return False
-    if work.counts[VERTEX_COUNT] != obstacles.used:
+    count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
+    if work.counts[VERTEX_COUNT] != count:
         return False
-    for number in range(obstacles.used):
-        vertex = obstacles.vertices[number]
+    for number in range(count):
+        vertex = _vertex(local, known, number)
         if work.corner_of[number] != vertex.polygon:
             return False
         if work.corner_x[number] != vertex.x or work.corner_y[number] != vertex.y:
@@ -153,20 +154,29 @@ def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: Planning
     return True
 
 
-def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> None:
+def begin(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> None:
     """Forget all, and store the request."""
     numbers = _numbers(request)
     for which in range(REQUEST_SIZE):
         set_requested(work, which, numbers[which])
-    set_count(work, VERTEX_COUNT, obstacles.used)
-    for number in range(obstacles.used):
-        vertex = obstacles.vertices[number]
+    count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
+    set_count(work, VERTEX_COUNT, count)
+    for number in range(count):
+        vertex = _vertex(local, known, number)
         set_vertex(work, number, vertex.x, vertex.y, vertex.polygon)
     set_count(work, COUNT, 0)
     set_count(work, PHASE, PlanningPhase.LAY_OUT)
     set_count(work, STAGE, 0)
     set_count(work, STATUS, PlanningStatus.PLANNING)
     set_count(work, BEST_SEGMENT_COUNT, 0)
+
+
+def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Vertex:
+    """Return a vertex of both maps in a row; a known polygon has a number that no local one has."""
+    if number < LOCAL_VERTICES:
+        return local.vertices[number]
+    vertex = known[number - LOCAL_VERTICES]
+    return vertex._replace(polygon=vertex.polygon + LOCAL_VERTICES) if vertex.polygon > 0 else Vertex()
 
 
 def step(work: PlanningWork, request: PlanningRequest) -> None:
@@ -256,7 +266,7 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     region = search_region(request)
     edges = add_edges(work, request.goal, region)
     set_count(work, EDGE_COUNT, edges)
-    if edges > EDGES:
+    if edges > len(work.edge_x1):
         _finish(work, PlanningStatus.TOO_MANY_EDGES)
         return
     fits = index_edges(work, edges, region, request.car)

@@ -35,6 +35,8 @@ class PlanningRequest(NamedTuple):
     max_cusps: int = 0
     """Changes of direction of a path that is taken."""
     dynamics: DrivingDynamics = DrivingDynamics()
+    has_map: bool = False
+    """The polygons of the given map are obstacles, too."""
 
 
 class SearchRegion(NamedTuple):

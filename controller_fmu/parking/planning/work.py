@@ -2,12 +2,13 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.parking.geometry.polygons import VERTICES
+from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES
 from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
 from modelkit.vocabulary import Pose
 
 EDGES = 512
+MAX_VERTICES = LOCAL_VERTICES + MAP_VERTICES
 EDGE_CELLS = 64
 EDGE_ITEMS = 32768
 COST_TO_GO_CELLS = 128
@@ -77,9 +78,9 @@ class PlanningWork(NamedTuple):
     transition_fraction: Annotated[Floats, Column("d", SEGMENTS, "1", "fraction requested of the transition before it")]
     arc_length: Annotated[Floats, Column("d", SEGMENTS, "m", "length of a segment between its transitions")]
     arc_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature there")]
-    corner_x: Annotated[Floats, Column("d", VERTICES, "m", "x of a corner of the requested scene")]
-    corner_y: Annotated[Floats, Column("d", VERTICES, "m", "its y")]
-    corner_of: Annotated[Ints, Column("i", VERTICES, "1", "its polygon")]
+    corner_x: Annotated[Floats, Column("d", MAX_VERTICES, "m", "x of a corner of the requested scene")]
+    corner_y: Annotated[Floats, Column("d", MAX_VERTICES, "m", "its y")]
+    corner_of: Annotated[Ints, Column("i", MAX_VERTICES, "1", "its polygon")]
     requested: Annotated[Floats, Column("d", REQUEST_SIZE, "1", "the numbers of the request")]
     counts: Annotated[Ints, Column("i", 32, "1", "counts and places, see below")]
     values: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]

@@ -1,7 +1,7 @@
 """The words that lead to the target, cheapest first, and whether the car can drive one: how a node is joined to it."""
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
-from controller_fmu.parking.planning.collision import free_distance
+from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.search_tree import set_best
 from controller_fmu.parking.planning.work import (
@@ -13,7 +13,6 @@ from controller_fmu.parking.planning.work import (
     PlanningWork,
     discard_word,
 )
-from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 MAX_LENGTH = 10.0
@@ -40,9 +39,12 @@ def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int
 def cheapest_word(work: PlanningWork, words: int) -> int:
     """Return the word of least cost."""
     best = 0
+    least = work.word_cost[0]
     for word in range(1, words):
-        if work.word_cost[word] < work.word_cost[best]:
+        cost = work.word_cost[word]
+        if cost < least:
             best = word
+            least = cost
     return best
 
 
@@ -81,12 +83,15 @@ def _ends_free(work: PlanningWork, word: int) -> bool:
 def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:
     """Return whether the car can drive a word from ``pose``."""
     rest = work.word_code[word]
+    gap = clearance(work, pose, problem) - problem.margin
     for segment in range(5):
         distance = word_length(work, word, segment)
         k = (rest % 3 - 1) * problem.car.max_curvature
         rest = rest // 3
         if distance != 0.0:
-            if free_distance(work, pose, sign(distance), k, abs(distance), problem) < abs(distance):
+            driven = sweep_arc(work, pose, gap, distance, k, problem)
+            if driven.distance < abs(distance):
                 return False
+            gap = driven.gap
             pose = pose_along_arc(pose, distance, k)
     return True

@@ -7,11 +7,13 @@ keeps half of it, as no step is longer than the margin over ``max_point_speed_ra
 """
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import max_point_speed_ratio, pose_along_arc
 from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.work import PlanningWork
+from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 MAX_CLEARANCE = 1.0
@@ -51,21 +53,39 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
     return math.sqrt(best)
 
 
+class ArcSweep(NamedTuple):
+    """How far the car can drive along an arc."""
+
+    distance: float
+    """Before its clearance falls under the margin [m]."""
+    gap: float
+    """Clearance beyond the margin [m] where the sweep has ended."""
+
+
 def free_distance(
     work: PlanningWork, pose: Pose, direction: float, curvature: float, longest: float, problem: SearchProblem
 ) -> float:
     """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
+    gap = clearance(work, pose, problem) - problem.margin
+    return sweep_arc(work, pose, gap, direction * longest, curvature, problem).distance
+
+
+def sweep_arc(
+    work: PlanningWork, pose: Pose, gap: float, distance: float, curvature: float, problem: SearchProblem
+) -> ArcSweep:
+    """Drive along an arc, at most ``distance`` [m] (reverse negative), from a pose with ``gap`` [m] over the margin."""
+    direction = sign(distance)
+    longest = abs(distance)
     rate = max_point_speed_ratio(problem.car, curvature)
     least = MIN_STEP if MIN_STEP * rate < problem.margin else problem.margin / rate
-    distance = 0.0
-    gap = clearance(work, pose, problem) - problem.margin
-    while distance < longest:
+    driven = 0.0
+    while driven < longest:
         sure = gap / rate if gap > 0.0 else 0.0
         step = sure if sure > least else least
-        after = distance + step if distance + step < longest else longest
+        after = driven + step if driven + step < longest else longest
         gap_after = clearance(work, pose_along_arc(pose, direction * after, curvature), problem) - problem.margin
         if gap_after < 0.0:
-            return distance + sure if distance + sure < longest else longest
-        distance = after
+            return ArcSweep(driven + sure if driven + sure < longest else longest, gap_after)
+        driven = after
         gap = gap_after
-    return longest
+    return ArcSweep(longest, gap)

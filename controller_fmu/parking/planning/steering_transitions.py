@@ -11,9 +11,10 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
-from controller_fmu.parking.planning.collision import free_distance
+from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.curvature_transition import SAME_CURVATURE
 from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest, SearchProblem
+from controller_fmu.parking.planning.shortcut_smoothing import pose_at
 from controller_fmu.parking.planning.work import (
     ARC_COUNT,
     BEST_PATH_MARGIN,
@@ -22,11 +23,11 @@ from controller_fmu.parking.planning.work import (
     TRANSITION_TRIED,
     PlanningWork,
     set_arc_curvature,
-    set_arc_length,
     set_best_segment,
     set_best_speed,
     set_count,
     set_segment,
+    set_segment_length,
     set_segment_speed,
     set_transition_fraction,
 )
@@ -233,84 +234,83 @@ def _bent_length(work: PlanningWork, segment: int) -> float:
 
 def _solve(work: PlanningWork, start: Pose, heading: float, dynamics: DrivingDynamics) -> int:
     """Lay out the path with lengths so that it ends at the goal; returns a segment that is too short if any is."""
-    count = work.counts[BEST_SEGMENT_COUNT]
-    for segment in range(count):
-        before = _transition(work, segment, dynamics)
-        after = _transition(work, segment + 1, dynamics)
-        late = _distance_in(before.late, before, dynamics.acceleration)
-        early = _distance_in(after.early, after, dynamics.deceleration)
-        set_arc_length(work, segment, _bent_length(work, segment) - late - early)
+    _lay_out(work, dynamics)
     for _ in range(MAX_ITERATIONS):
-        end = _lay_out(work, start, dynamics)
+        end = _end(work, start)
         turn = wrap_angle(heading - end.heading)
         if abs(end.x) + abs(end.y) + abs(turn) < MAX_END_ERROR:
-            for segment in range(count):
-                if work.arc_length[segment] < MIN_ARC:
-                    return segment
-            return SOLVED
+            return _too_short(work)
         solved = _correct_lengths(work, end, turn)
         if not solved:
             return UNSOLVED
     return UNSOLVED
 
 
-def _lay_out(work: PlanningWork, start: Pose, dynamics: DrivingDynamics) -> Pose:
-    """Write the segments of the path with transitions, and the lengths in hand between; returns where it ends."""
+def _lay_out(work: PlanningWork, dynamics: DrivingDynamics) -> None:
+    """Write the segments of the path with transitions; those between become shorter by what transitions take."""
     set_count(work, SEGMENT_COUNT, 0)
     count = work.counts[BEST_SEGMENT_COUNT]
-    pose = start
-    for joint in range(count + 1):
-        transition = _transition(work, joint, dynamics)
-        if joint > 0:
-            pose = _add_early(work, pose, transition, sign(work.best_length[joint - 1]), dynamics)
-        if joint < count:
-            direction = sign(work.best_length[joint])
-            pose = _add_late(work, pose, transition, direction, dynamics)
-            pose = _add(work, pose, direction * work.arc_length[joint], work.arc_curvature[joint], 0.0)
-    return pose
+    before = _transition(work, 0, dynamics)
+    for segment in range(count):
+        direction = sign(work.best_length[segment])
+        after = _transition(work, segment + 1, dynamics)
+        late = _distance_in(before.late, before, dynamics.acceleration)
+        early = _distance_in(after.early, after, dynamics.deceleration)
+        _add_half(work, before, True, direction, dynamics)
+        _add(work, direction * (_bent_length(work, segment) - late - early), work.arc_curvature[segment], 0.0)
+        _add_half(work, after, False, direction, dynamics)
+        before = after
 
 
-def _add_early(
-    work: PlanningWork, pose: Pose, transition: SteeringTransition, direction: float, dynamics: DrivingDynamics
-) -> Pose:
-    """Add the arcs of a transition before the begin of a segment."""
-    count = _arc_count(work, transition.stops, transition.early)
+def _add_half(
+    work: PlanningWork, transition: SteeringTransition, late: bool, direction: float, dynamics: DrivingDynamics
+) -> None:
+    """Add the arcs of a transition before or behind (``late``) the begin of a segment; none sets out too fast."""
+    time = transition.late if late else transition.early
+    count = _arc_count(work, transition.stops, time)
     rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
+    acceleration = dynamics.acceleration if late else dynamics.deceleration
     for number in range(count):
-        each = transition.early / count
-        left = transition.early - number * each
-        far = _distance_in(left, transition, dynamics.deceleration)
-        near = _distance_in(left - each, transition, dynamics.deceleration)
+        each = time / count
+        far = (number + 1) * each if late else time - number * each
+        near = number * each if late else far - each
         angle = transition.angle_before + rate * (number + 0.5) * each
-        pose = _add(work, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, transition.speed)
-    return pose
-
-
-def _add_late(
-    work: PlanningWork, pose: Pose, transition: SteeringTransition, direction: float, dynamics: DrivingDynamics
-) -> Pose:
-    """Add the arcs of a transition behind the begin of a segment; setting out, no faster than planned."""
-    count = _arc_count(work, transition.stops, transition.late)
-    rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate
-    for number in range(count):
-        each = transition.late / count
-        near = _distance_in(number * each, transition, dynamics.acceleration)
-        far = _distance_in((number + 1) * each, transition, dynamics.acceleration)
-        angle = transition.angle_after - rate * (transition.late - (number + 0.5) * each)
         speed = transition.speed
-        if transition.stops:
-            speed = min(speed, dynamics.acceleration * (number + 1) * each)
-        pose = _add(work, pose, direction * (far - near), math.tan(angle) / dynamics.wheelbase, speed)
-    return pose
+        if late:
+            angle = transition.angle_after - rate * (time - (number + 0.5) * each)
+            speed = min(speed, acceleration * far) if transition.stops else speed
+        length = _distance_in(far, transition, acceleration) - _distance_in(near, transition, acceleration)
+        _add(work, direction * length, math.tan(angle) / dynamics.wheelbase, speed)
 
 
-def _add(work: PlanningWork, pose: Pose, distance: float, k: float, speed: float) -> Pose:
-    """Add a segment; returns where it ends."""
+def _add(work: PlanningWork, distance: float, k: float, speed: float) -> None:
+    """Add a segment; where it begins is not known yet."""
     number = work.counts[SEGMENT_COUNT]
-    set_segment(work, number, pose, distance, k)
+    set_segment(work, number, Pose(), distance, k)
     set_segment_speed(work, number, speed)
     set_count(work, SEGMENT_COUNT, number + 1)
-    return pose_along_arc(pose, distance, k)
+
+
+def _end(work: PlanningWork, start: Pose) -> Pose:
+    """Set where the segments laid out begin; returns where the path ends."""
+    pose = start
+    for number in range(work.counts[SEGMENT_COUNT]):
+        distance = work.segment_length[number]
+        k = work.segment_curvature[number]
+        set_segment(work, number, pose, distance, k)
+        pose = pose_along_arc(pose, distance, k)
+    return pose
+
+
+def _too_short(work: PlanningWork) -> int:
+    """Return the first segment that is too short between its transitions, or ``SOLVED``."""
+    segment = 0
+    for number in range(work.counts[SEGMENT_COUNT]):
+        if work.segment_speed[number] == 0.0:
+            if work.segment_length[number] * sign(work.best_length[segment]) < MIN_ARC:
+                return segment
+            segment += 1
+    return SOLVED
 
 
 class GoalNormalMatrix(NamedTuple):
@@ -391,20 +391,20 @@ def _correct_lengths(work: PlanningWork, end: Pose, turn: float) -> bool:
             distance = work.best_length[segment]
             slope = _end_derivative(work, number, sign(distance), end)
             change = _bent_length(work, segment) * (slope.x * x + slope.y * y + slope.heading * h)
-            set_arc_length(work, segment, work.arc_length[segment] + change)
+            set_segment_length(work, number, work.segment_length[number] + sign(distance) * change)
             segment += 1
     return True
 
 
 def _is_free(work: PlanningWork, problem: SearchProblem) -> bool:
     """Return whether the path laid out keeps its margin."""
+    gap = clearance(work, pose_at(work, 0), problem) - problem.margin
     for number in range(work.counts[SEGMENT_COUNT]):
         distance = work.segment_length[number]
-        pose = Pose(work.segment_x[number], work.segment_y[number], work.segment_heading[number])
-        if free_distance(work, pose, sign(distance), work.segment_curvature[number], abs(distance), problem) < abs(
-            distance
-        ):
+        driven = sweep_arc(work, pose_at(work, number), gap, distance, work.segment_curvature[number], problem)
+        if driven.distance < abs(distance):
             return False
+        gap = driven.gap
     return True
 
 

@@ -76,8 +76,7 @@ class PlanningWork(NamedTuple):
     best_speed: Annotated[Floats, Column("d", SEGMENTS, "m/s", "its largest speed: see PathSegment")]
     best_clearance: Annotated[Floats, Column("d", SEGMENTS, "m", "room about its begin: see PathSegment")]
     transition_fraction: Annotated[Floats, Column("d", SEGMENTS, "1", "fraction requested of the transition before it")]
-    arc_length: Annotated[Floats, Column("d", SEGMENTS, "m", "length of a segment between its transitions")]
-    arc_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature there")]
+    arc_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "curvature of a segment between its transitions")]
     corner_x: Annotated[Floats, Column("d", MAX_VERTICES, "m", "x of a corner of the requested scene")]
     corner_y: Annotated[Floats, Column("d", MAX_VERTICES, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", MAX_VERTICES, "1", "its polygon")]
@@ -256,9 +255,9 @@ def set_transition_fraction(work: PlanningWork, joint: int, fraction: float) -> 
     work.transition_fraction[joint] = fraction
 
 
-def set_arc_length(work: PlanningWork, segment: int, length: float) -> None:
-    """Set the length of a segment between its transitions."""
-    work.arc_length[segment] = length
+def set_segment_length(work: PlanningWork, segment: int, distance: float) -> None:
+    """Set the distance of a segment of the path."""
+    work.segment_length[segment] = distance
 
 
 def set_arc_curvature(work: PlanningWork, segment: int, k: float) -> None:

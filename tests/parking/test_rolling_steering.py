@@ -6,7 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from controller_fmu.common.chart import bit
+from controller_fmu.parking.chart import Condition, ParkingState
 from controller_fmu.parking.following.params import START_ACCELERATION, FollowingContext, FollowingParams
+from controller_fmu.parking.following.path_tracking import PathProgress, begin_path, next_segment
 from controller_fmu.parking.following.rolling_steering import (
     MIN_ROLLING_SPEED,
     OVERRUN_FACTOR,
@@ -17,9 +20,13 @@ from controller_fmu.parking.following.rolling_steering import (
     upcoming_stop,
 )
 from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.curvature_transition import lateral_offset_after, transition_length
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import PathSegment, PlannedPath
+from controller_fmu.parking.signals import ParkingSystemInput
+from controller_fmu.parking.state import ParkingMemory
+from controller_fmu.parking.system import conditions_of
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
@@ -214,3 +221,20 @@ def test_what_lies_ahead_reaches_to_the_next_change_of_gear() -> None:
     assert on_the_ramp < upcoming_stop(path, 0, 0.5, CONTEXT).speed < CONTEXT.drive.speed
     assert upcoming_stop(path, 1, 3.0, CONTEXT).speed == pytest.approx(on_the_ramp, rel=1e-3)
     assert upcoming_stop(path, 1, 1.0, CONTEXT).speed == CONTEXT.drive.speed
+
+
+@pytest.mark.parametrize(("share", "sets_out"), [(0.9, True), (1.1, False)])
+def test_the_vehicle_sets_out_when_its_wheel_may_turn_the_rest_on_the_move(share: float, sets_out: bool) -> None:
+    """What the next stop allows is more: setting out by that, the vehicle left its path by 9 cm."""
+    path = path_of((1.5, 0.1), (-2.0, 0.0), (2.0, 0.3))
+    here, stop = standstill_before(path, 1, CONTEXT), standstill_before(path, 2, CONTEXT)
+    before = begin_path(PathProgress(), path, Pose(), CONTEXT)
+    progress = next_segment(before._replace(remaining=0.0), CONTEXT)
+    params = ParkingParams()
+    assert progress.upcoming.standstill == stop
+    assert stop.after > 1.2 * here.after > 0.0
+    rest = share * here.after * params.car.steering.rate_limit
+    memory = ParkingMemory(state=ParkingState.STEERING, progress=progress, steering_wheel_angle=0.0)
+    inputs = ParkingSystemInput(steering_wheel_angle=rest)
+    bits = conditions_of(memory, inputs, params)
+    assert bool(bits & bit(Condition.WHEEL_TURNED, True)) == sets_out

@@ -14,6 +14,7 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.recording import Recording
+from orchestrator.studies.parking.studied_systems import with_system
 
 KINEMATIC, DOUBLE_TRACK = "kinematic", "double_track"
 BODIES = {
@@ -29,6 +30,15 @@ BODIES = {
     ),
 }
 """Body -> what is set of the vehicle: the double track has errors of steering, brake, odometry and sensors."""
+
+
+def load_scene(name: str, overrides: Sequence[str] = (), system: int | None = None) -> Scenario:
+    """Return the scene ``name`` (a file), driven by ``system`` instead of its own if that is given.
+
+    Raises ``BadInput`` if the system's map does not hold its obstacles.
+    """
+    scenario = load_scenario(name, list(overrides))
+    return scenario if system is None else with_system(scenario, system)
 
 
 class DrivenScene(NamedTuple):
@@ -63,9 +73,13 @@ def drive_scene(
     kind: str,
     interrupt: Interrupt | None = None,
     overrides: Sequence[str] = (),
+    system: int | None = None,
 ) -> tuple[DrivenScene, SceneRun]:
-    """Return how the scene ``name`` (a file) was driven on ``body`` with further ``overrides``, and the run itself."""
-    scenario = load_scenario(name, [*BODIES[body], *overrides])
+    """Return how the scene ``name`` (a file) was driven on ``body``, and the run itself.
+
+    ``overrides``: as of ``--set``; ``system``: instead of the scene's own.
+    """
+    scenario = load_scene(name, [*BODIES[body], *overrides], system)
     ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
     facts = facts_of(ran.recording, scenario)
     summary = summarize(ran.recording, scenario, ran.wall_time, facts=facts)

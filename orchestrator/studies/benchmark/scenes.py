@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 from fmus.contents.description import project_version
 from fmus.files import write_whole
-from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import sources_hash
-from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScene, SceneRun, drive_scene
+from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScene, SceneRun, drive_scene, load_scene
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
 
@@ -66,8 +66,13 @@ class SceneRow(NamedTuple):
         return self.plan.found and all(drive.parked for drive in self.drives.values())
 
 
-def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = False) -> list[Scene]:
-    """Return the scenes that folders, files and names mean; without any, those shipped. Raises ``BadInput``."""
+def scenes_in(
+    places: Sequence[str], bodies: Sequence[str], optimal: bool = False, system: int | None = None
+) -> list[Scene]:
+    """Return the scenes that folders, files and names mean; without any, those shipped. Raises ``BadInput``.
+
+    ``system``: drives them instead of their own.
+    """
     found: list[tuple[str, str]] = []
     for place in places:
         folder = Path(place)
@@ -81,7 +86,8 @@ def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = Fals
     if not places:
         found = [("shipped", name) for name in valet_scenarios()]
     asked = [[BODIES[body] for body in bodies], optimal, sources_hash(), project_version()]
-    return [_scene(group, name, asked) for group, name in dict.fromkeys(found)]
+    asked += [system] if system is not None else []
+    return [_scene(group, name, asked, system) for group, name in dict.fromkeys(found)]
 
 
 def valet_scenarios() -> list[str]:
@@ -89,8 +95,8 @@ def valet_scenarios() -> list[str]:
     return [name for name in scenario_names() if name.startswith(VALET_PREFIX)]
 
 
-def _scene(group: str, name: str, asked: list[Any]) -> Scene:
-    scenario = load_scenario(name)
+def _scene(group: str, name: str, asked: list[Any], system: int | None) -> Scene:
+    scenario = load_scene(name, (), system)
     if scenario.target is None:
         raise BadInput("this scenario has no target to plan a path to", file=scenario.file, key="target")
     key = hashlib.sha256(json.dumps([scenario.model_dump_json(), *asked]).encode()).hexdigest()[:32]
@@ -108,6 +114,7 @@ def rows_of(
     out: Path,
     interrupt: Interrupt,
     optimal: bool = False,
+    system: int | None = None,
 ) -> Iterator[SceneRow]:
     """Yield the row of each scene, kept in ``out`` or new; none begins after an interrupt.
 
@@ -119,10 +126,10 @@ def rows_of(
         file = out / ROWS / f"{scene.group}-{scene.name}.json"
         row = read_row(file, scene)
         if row is None:
-            plan = plan_scene(load_scenario(scene.file))
+            plan = plan_scene(load_scene(scene.file, (), system))
             drives, runs = {}, {}
             for body in bodies if plan.found else ():
-                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt)
+                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt, (), system)
                 if interrupt.requested:
                     return
             optimum = None

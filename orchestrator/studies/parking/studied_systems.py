@@ -19,6 +19,8 @@ from orchestrator.inputs.text.errors import BadInput
 
 APA_SYSTEM, VALET_SYSTEM, PARKING_SYSTEM = 5, 7, 8
 """Values of ``controller.system``."""
+VALETS = (VALET_SYSTEM, 10)
+"""The valet, and the same with a larger map."""
 NO_SIGNALS: Mapping[str, str] = MappingProxyType({})
 
 
@@ -73,7 +75,9 @@ SYSTEMS: Mapping[int, StudiedSystem] = {
     PARKING_SYSTEM: StudiedSystem(
         parameters={
             "plan.at_once": "plan.steps_per_sample",
+            "plan.curvature_share": "plan.curvature_fraction",
             "search.way": "slot.distance",
+            "search.open_ended": "slot.open_ended",
             "search.wish": "slot.wanted",
         },
         same_rules={"slot.kerb_shift": 0.5, "slot.stand_out": 0.5},
@@ -115,17 +119,22 @@ def study_name(name: str, system: int, own: int) -> str:
 def with_system(scenario: Scenario, system: int) -> Scenario:
     """Return a scenario driven by ``system``: parameters that it does not have are left out.
 
-    A slot that is a parameter of the valet becomes the target pose.
+    A slot that is a parameter of the valet becomes the target pose. Raises ``BadInput`` if the map is too large.
     """
     own = scenario.controller
     if own["system"] == system:
         return scenario
+    if own["system"] in VALETS:
+        own = {"search.active": False, **own}
     known = {item.name for item in variables(models_for({"system": system})["controller"].params)}
     renamed = {SYSTEMS[system].parameters.get(name, name): value for name, value in own.items()}
     if "slot.kind" in own and scenario.target is not None:
         renamed |= {f"target.{axis}": float(value) for axis, value in scenario.target.model_dump().items()}
     kept = {name: value for name, value in renamed.items() if name in known}
-    rules = SYSTEMS[system].same_rules if own["system"] == VALET_SYSTEM else {}
+    if any(name.startswith("map[") and name not in known for name in renamed):
+        room = sum(name.startswith("map[") for name in known) // 3
+        raise BadInput(f"the map of system {system} holds {room} corners only", file=scenario.file, key="obstacles")
+    rules = SYSTEMS[system].same_rules if own["system"] in VALETS else {}
     return scenario.model_copy(update={"controller": {**rules, **kept, "system": system}})
 
 

@@ -123,6 +123,32 @@ def test_a_chain_ends_at_a_jump_and_after_lost_echoes() -> None:
     assert is_passed(chain._replace(lost=3), last._replace(x=2.6))
 
 
+def test_echoes_of_a_face_at_the_boundary_of_the_cone_end_a_chain_of_a_slow_pass() -> None:
+    """Every 4 cm their ranges fall by 8 cm, which the noise explains; over 16 cm it does not."""
+    chain = EchoChain()
+    for number in range(8):
+        sensor = SensorPose(0.04 * number, 0.0, 0.0, -1.0)
+        measured = 3.0 - 2.0 * sensor.x
+        if chain.used == 0 or not continues(chain, sensor, measured, 1e-4):
+            chain = begin_chain(sensor, measured, False)
+        else:
+            chain = append_echo(chain, sensor, measured)
+        assert chain.used < 4, "four echoes make a landmark"
+
+
+@pytest.mark.parametrize("lateral", [0.5, 1.0])
+def test_a_slow_pass_finds_both_cars(lateral: float) -> None:
+    boxes = [Box(x, -2.3, 0.0, 1.8, 4.6) for x in (-0.9, 4.05)]
+    local_map = LandmarkMap()
+    start = Pose(-6.8, CAR.width / 2 + lateral - 5.0 * math.tan(math.radians(5.0)), math.radians(5.0))
+    for _, believed, readings in drive_past(boxes, start, 10.5, 167, speed=1.0):
+        local_map = update_map(local_map, readings, believed, CAR.ultrasonic, PARAMS)
+    found = [item for item in local_map.landmarks if item.type == LandmarkType.SEGMENT and item.confirmations > 9]
+    ends = sorted((min(start_point(item).x, end_point(item).x), length_of(item)) for item in found)
+    assert [begin for begin, _ in ends] == pytest.approx([-1.8, 3.15], abs=0.15)
+    assert [length for _, length in ends] == pytest.approx([1.8, 1.8], abs=0.2)
+
+
 def test_a_long_chain_keeps_its_ends() -> None:
     chain = chain_past(0.0, 12.0, 0.0)
     assert chain.echoes[0].x == pytest.approx(-0.5)

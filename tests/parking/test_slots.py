@@ -183,3 +183,18 @@ def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:
     assert without_inside(inside, slot).type == LandmarkType.NONE
     assert without_inside(inside._replace(y=1.0), slot) == inside._replace(y=1.0)
     assert without_inside(inside._replace(end=2.0), slot).type == LandmarkType.SEGMENT
+
+
+@pytest.mark.parametrize("open_ended", [False, True])
+def test_beside_one_car_there_is_a_slot_where_the_driver_takes_one(open_ended: bool) -> None:
+    local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
+    start = Pose(-9.0, CAR.width / 2 + 1.0, 0.0)
+    for _, pose, readings in drive_past(bays(2.6, 1)[:2], start, 13.0, 1):
+        local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
+    row = find_row(local_map.landmarks, pose, -1.0, params)
+    wanted = SlotParams(open_ended=open_ended)
+    slot = find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, wanted, params)
+    assert slot.type == (SlotType.PERPENDICULAR if open_ended else SlotType.NONE)
+    if open_ended:
+        goal = goal_pose(slot, OUTLINE, wanted)
+        assert goal.x == pytest.approx(-0.4 + wanted.room_across + OUTLINE.half_width, abs=0.2)

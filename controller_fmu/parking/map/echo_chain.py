@@ -16,6 +16,8 @@ SPACING = 0.04
 """Least distance [m] between the sensor positions of two echoes."""
 MAX_SLOPE = 0.7
 """Change of range per metre: sine of the widest half cone, and of a sensor that looks aside (34 + 8 deg)."""
+SLOPE_ECHOES = 4
+"""So many echoes back the slope is looked at: 0.16 m at 1 m/s, over which a face at the boundary falls by 0.3 m."""
 JUMP_SIGMA = 5.0
 """Standard deviations of the difference of two echoes that noise may explain."""
 LOST_DISTANCE = 0.25
@@ -52,15 +54,23 @@ class EchoChain(NamedTuple):
 
 
 def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: float) -> bool:
-    """Return whether an echo at ``measured`` [m], of ``variance`` [m2], can come from the body of the chain."""
-    last = chain.echoes[max(chain.used - 1, 0)]
-    dx = sensor.x - last.x
-    dy = sensor.y - last.y
-    moved = math.sqrt(dx * dx + dy * dy)
-    jump = abs(measured - last.range) - MAX_SLOPE * moved
+    """Return whether an echo at ``measured`` [m], of ``variance`` [m2], can come from the body of the chain.
+
+    Also after several echoes: those of the cone's boundary on a face run too steeply, by less than the noise at each
+    step of a slow pass.
+    """
     first = chain.echoes[0]
-    same_axis = sensor.axis_x * first.axis_x + sensor.axis_y * first.axis_y > MAX_TURN_COS
-    return same_axis and jump < JUMP_SIGMA * math.sqrt(2.0 * variance)
+    if sensor.axis_x * first.axis_x + sensor.axis_y * first.axis_y <= MAX_TURN_COS:
+        return False
+    for back in range(1, SLOPE_ECHOES + 1):
+        if back == 1 or back <= chain.used:
+            before = chain.echoes[max(chain.used - back, 0)]
+            dx = sensor.x - before.x
+            dy = sensor.y - before.y
+            jump = abs(measured - before.range) - MAX_SLOPE * math.sqrt(dx * dx + dy * dy)
+            if jump >= JUMP_SIGMA * math.sqrt(2.0 * variance):
+                return False
+    return True
 
 
 def is_turned_back(chain: EchoChain, sensor: SensorPose) -> bool:

@@ -92,8 +92,15 @@ def find_slot(
     slot: SlotParams,
     params: MappingParams,
 ) -> SlotCandidate:
-    """Return the gap passed last into which the vehicle fits, else a rejected one, else type NONE."""
+    """Return the gap passed last into which the vehicle fits, else a rejected one, else type NONE.
+
+    With ``slot.open_ended`` the place beyond the last car counts as a gap, as far as it is observed free.
+    """
     found = SlotCandidate()
+    if slot.open_ended and row.used > 0:
+        beside = _candidate(_with_end(row, outline, slot), 0, landmarks, outline, slot, params)
+        is_free_there = beside.type == SlotType.PERPENDICULAR and is_observed_free(beside, rays)
+        found = beside if is_free_there else found
     for number in range(MEMBERS - 1):
         if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
             candidate = _candidate(row, number, landmarks, outline, slot, params)
@@ -102,6 +109,19 @@ def find_slot(
                 better = candidate.reason == Reason.NONE or found.type == SlotType.NONE
                 found = candidate if better else found
     return found
+
+
+def _with_end(row: SlotRow, outline: VehicleOutline, slot: SlotParams) -> SlotRow:
+    """Return a row that ends with a car ahead of the last one, of which nothing is known but the room before it."""
+    last = row.members[0]
+    width = 2.0 * (outline.half_width + slot.room_across)
+    start = last.end + width
+    front = last.front + row.slope * row.side * (width + CAR_WIDTH)
+    end = RowMember(start, start + CAR_WIDTH, front, False, False, front, front)
+    return row._replace(
+        members=tuple(end if number == 0 else row.members[number - 1] for number in range(MEMBERS)),
+        used=min(row.used + 1, MEMBERS),
+    )
 
 
 def _candidate(
@@ -240,9 +260,10 @@ def gap_depth(
 
 
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
-    """Return whether the gap behind the fronts has been observed free, as deep as it is, or both its edges have.
+    """Return whether the gap behind the fronts has been observed free, as deep as it is, or its edges have.
 
-    From afar the corners of a narrow gap hide what is between them; then the way in will show it.
+    From afar the corners of a narrow gap hide what is between them; then the way in will show it. Of an edge that no
+    echo came from, the free mouth shows that the gap reaches it.
     """
     count = 0
     for deep in FREE_DEPTHS:
@@ -252,7 +273,8 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
             if is_free(rays, point.x, point.y):
                 count += 1
     has_edges = candidate.behind.end_known and candidate.ahead.start_known
-    return count >= MIN_FREE or has_edges
+    has_edge = candidate.behind.end_known or candidate.ahead.start_known
+    return count >= MIN_FREE or has_edges or (has_edge and count >= MIN_FREE - 1)
 
 
 def row_point(row: SlotRow, along: float, deep: float) -> Point:

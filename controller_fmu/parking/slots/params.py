@@ -15,6 +15,7 @@ class SlotParams(NamedTuple):
     wanted: Annotated[
         int, Signal("1", "how to stand in it; none: as the row tells, tail in unless it leads on", states=SlotKind)
     ] = SlotKind.NONE
+    open_ended: Annotated[bool, Signal("1", "one neighbour will do, passed first, for a slot across the road")] = False
     room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
     room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15

@@ -9,7 +9,7 @@ import yaml
 from orchestrator.cli import main
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_files import can_compile
-from orchestrator.studies.benchmark.driving import load_scene
+from orchestrator.studies.benchmark.driving import SceneChanges, load_scene
 from orchestrator.studies.benchmark.parkbench import read_parkbench
 from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
 from tests.benchmark.parkbench_scene import scene, write
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python n
 def test_a_scene_is_driven_by_the_system_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "one.yaml"
     file.write_text(yaml.safe_dump(read_parkbench(write(tmp_path / "scene.json", scene())) | {"name": "one"}))
-    own, other = load_scene(str(file)), load_scene(str(file), (), PARKING_SYSTEM)
+    own, other = load_scene(str(file)), load_scene(str(file), SceneChanges(system=PARKING_SYSTEM))
     assert other.controller["search.active"] is False
     assert {name for name in other.controller if name.startswith("map[")} == {
         name for name in own.controller if name.startswith("map[")
@@ -40,4 +40,4 @@ def test_a_map_that_is_too_large_is_refused_with_what_it_holds(tmp_path: Path) -
     file = tmp_path / "many.yaml"
     file.write_text(yaml.safe_dump(content))
     with pytest.raises(BadInput, match="holds 360 corners"):
-        load_scene(str(file), (), PARKING_SYSTEM)
+        load_scene(str(file), SceneChanges(system=PARKING_SYSTEM))

@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
                 file.unlink()
         files = fmu_files("native", say)
         with on_interrupt(interrupt), Meter("apa bench parking", len(scenes), "scenes") as meter:
-            for row in rows_of(scenes, bodies, (files, "native"), out, interrupt, arguments.optimal, system):
+            for row in rows_of(scenes, bodies, (files, "native"), out, interrupt, arguments.optimal):
                 rows.append(row)
                 meter.at(len(rows), row.scene.name)
         content = as_json(rows, shlex.join(["apa", *arguments.words]))

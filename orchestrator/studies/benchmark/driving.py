@@ -32,13 +32,22 @@ BODIES = {
 """Body -> what is set of the vehicle: the double track has errors of steering, brake, odometry and sensors."""
 
 
-def load_scene(name: str, overrides: Sequence[str] = (), system: int | None = None) -> Scenario:
-    """Return the scene ``name`` (a file), driven by ``system`` instead of its own if that is given.
+class SceneChanges(NamedTuple):
+    """What a scene is driven with instead of what its file says."""
 
-    Raises ``BadInput`` if the system's map does not hold its obstacles.
-    """
-    scenario = load_scenario(name, list(overrides))
-    return scenario if system is None else with_system(scenario, system)
+    overrides: Sequence[str] = ()
+    """As of ``--set``."""
+    system: int | None = None
+    """None: the scene's own."""
+
+
+NO_CHANGES = SceneChanges()
+
+
+def load_scene(name: str, changes: SceneChanges = NO_CHANGES) -> Scenario:
+    """Return the scene ``name`` (a file) with changes. Raises ``BadInput`` if the system's map is too small for it."""
+    scenario = load_scenario(name, list(changes.overrides))
+    return scenario if changes.system is None else with_system(scenario, changes.system)
 
 
 class DrivenScene(NamedTuple):
@@ -72,14 +81,10 @@ def drive_scene(
     files: Mapping[str, Path] | None,
     kind: str,
     interrupt: Interrupt | None = None,
-    overrides: Sequence[str] = (),
-    system: int | None = None,
+    changes: SceneChanges = NO_CHANGES,
 ) -> tuple[DrivenScene, SceneRun]:
-    """Return how the scene ``name`` (a file) was driven on ``body``, and the run itself.
-
-    ``overrides``: as of ``--set``; ``system``: instead of the scene's own.
-    """
-    scenario = load_scene(name, [*BODIES[body], *overrides], system)
+    """Return how the scene ``name`` (a file) was driven on ``body`` with further ``changes``, and the run itself."""
+    scenario = load_scene(name, changes._replace(overrides=[*BODIES[body], *changes.overrides]))
     ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
     facts = facts_of(ran.recording, scenario)
     summary = summarize(ran.recording, scenario, ran.wall_time, facts=facts)

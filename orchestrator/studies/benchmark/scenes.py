@@ -13,7 +13,15 @@ from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import sources_hash
-from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScene, SceneRun, drive_scene, load_scene
+from orchestrator.studies.benchmark.driving import (
+    BODIES,
+    KINEMATIC,
+    DrivenScene,
+    SceneChanges,
+    SceneRun,
+    drive_scene,
+    load_scene,
+)
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
 
@@ -34,6 +42,8 @@ class Scene(NamedTuple):
     """Of its polygons."""
     key: str
     """Hash of all that its row depends on."""
+    system: int | None = None
+    """Drives it instead of its own."""
 
 
 class OptimumFigures(NamedTuple):
@@ -96,11 +106,11 @@ def valet_scenarios() -> list[str]:
 
 
 def _scene(group: str, name: str, asked: list[Any], system: int | None) -> Scene:
-    scenario = load_scene(name, (), system)
+    scenario = load_scene(name, SceneChanges(system=system))
     if scenario.target is None:
         raise BadInput("this scenario has no target to plan a path to", file=scenario.file, key="target")
     key = hashlib.sha256(json.dumps([scenario.model_dump_json(), *asked]).encode()).hexdigest()[:32]
-    return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key)
+    return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key, system)
 
 
 def _natural(path: Path) -> tuple[int, str]:
@@ -114,7 +124,6 @@ def rows_of(
     out: Path,
     interrupt: Interrupt,
     optimal: bool = False,
-    system: int | None = None,
 ) -> Iterator[SceneRow]:
     """Yield the row of each scene, kept in ``out`` or new; none begins after an interrupt.
 
@@ -126,10 +135,11 @@ def rows_of(
         file = out / ROWS / f"{scene.group}-{scene.name}.json"
         row = read_row(file, scene)
         if row is None:
-            plan = plan_scene(load_scene(scene.file, (), system))
+            changes = SceneChanges(system=scene.system)
+            plan = plan_scene(load_scene(scene.file, changes))
             drives, runs = {}, {}
             for body in bodies if plan.found else ():
-                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt, (), system)
+                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt, changes)
                 if interrupt.requested:
                     return
             optimum = None

@@ -13,6 +13,8 @@ ACTION = "action["
 OBSERVATION = "observation["
 PEDALS = {2: False, 3: True}
 """Number of actions -> whether they are those of pedals."""
+FLOAT32 = "tensor(float)"
+"""Name of onnxruntime."""
 ACTION_PERIOD = 0.2
 """Between two actions [s], where nothing else is given."""
 MAX_ACTION_PERIOD = 10.0
@@ -50,12 +52,20 @@ def count_actions(network: Path) -> int:
     except ImportError as error:
         raise BadPolicy("needs onnxruntime: install apa-cosim[onnx]") from error
     count = sum(item.name.startswith(OBSERVATION) for item in variables(POLICY.outputs))
+    expected = f"expected one input (cars, {count}) and one output (cars, 2 or 3) in float32"
     try:
         session = runtime.InferenceSession(str(network), providers=["CPUExecutionProvider"])
-        (given, *more) = [item.name for item in session.get_inputs()]
-        found = session.run(None, {given: numpy.zeros((1, count), dtype=numpy.float32)})[0]
+        inputs, outputs = session.get_inputs(), session.get_outputs()
+        widths = [item.shape[-1] if item.shape else count for item in inputs]
+        known = [width for width in widths if isinstance(width, int)]
+        if len(inputs) != 1 or len(outputs) != 1 or inputs[0].type != FLOAT32 or known not in ([], [count]):
+            ports = ", ".join(f"{item.name} {item.shape} {item.type}" for item in (*inputs, *outputs))
+            raise BadPolicy(f"has {ports}: {expected}")
+        found = session.run(None, {inputs[0].name: numpy.zeros((1, count), dtype=numpy.float32)})[0]
+    except BadPolicy:
+        raise
     except Exception as error:  # onnxruntime has an exception of its own for each mistake
         raise BadPolicy(f"is no policy of {count} observations: {str(error).splitlines()[0]}") from error
-    if more or found.shape not in ((1, 2), (1, 3)):
-        raise BadPolicy(f"gives {found.shape}: expected one input (cars, {count}) and one output (cars, 2 or 3)")
+    if found.shape not in ((1, 2), (1, 3)):
+        raise BadPolicy(f"gives {found.shape}: {expected}")
     return int(found.shape[1])

@@ -34,6 +34,8 @@ class RandomPolicy:
 class OnnxPolicy:
     """A network in an ONNX file: one input (cars, 24), one output (cars, 2 or 3) in float32, its mean action.
 
+    One that was exported for one car acts for each in turn.
+
     Raises ``BadInput`` for a file that is none, and without onnxruntime (the extra ``onnx``).
     """
 
@@ -49,9 +51,11 @@ class OnnxPolicy:
         settings = onnxruntime.SessionOptions()
         settings.intra_op_num_threads = 1
         self._session: Any = onnxruntime.InferenceSession(str(file), settings, providers=["CPUExecutionProvider"])
-        self._input = self._session.get_inputs()[0].name
+        (observations,) = self._session.get_inputs()
+        self._input, self._one_by_one = observations.name, observations.shape[:1] == [1]
 
     def __call__(self, observations: Floats) -> Floats:
         """Return the network's actions, limited to their range."""
-        found = self._session.run(None, {self._input: observations})[0]
-        return np.clip(np.asarray(found, dtype=np.float32).reshape(len(observations), -1), -1.0, 1.0)
+        parts = observations[:, None] if self._one_by_one else [observations]
+        found = [self._session.run(None, {self._input: part})[0] for part in parts]
+        return np.clip(np.concatenate(found).astype(np.float32).reshape(len(observations), -1), -1.0, 1.0)

@@ -1,5 +1,6 @@
 """A learned policy as a controller: an FMU of a network with the bits of the environment, and its rank among others."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,9 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 
 
-def network(file: Path, actions: int = 2, observations: int = 24) -> Path:
+def network(
+    file: Path, actions: int = 2, observations: int = 24, cars: str | int = "cars", outputs: Sequence[str] = ("action",)
+) -> Path:
     """Write a policy: one layer whose weights are drawn, turned and in reverse on the whole."""
     rng = np.random.default_rng(3)
     weights = rng.normal(0.0, 0.2, (observations, actions)).astype(np.float32)
@@ -41,8 +44,8 @@ def network(file: Path, actions: int = 2, observations: int = 24) -> Path:
         helper.make_node("Tanh", ["sum"], ["action"]),
     ]
     ends = [
-        helper.make_tensor_value_info(name, TensorProto.FLOAT, ["cars", count])
-        for name, count in (("observation", observations), ("action", actions))
+        helper.make_tensor_value_info(name, TensorProto.FLOAT, [cars, count])
+        for name, count in (("observation", observations), *((name, actions) for name in outputs))
     ]
     constants = [numpy_helper.from_array(weights, "weights"), numpy_helper.from_array(bias, "bias")]
     graph = helper.make_graph(nodes, "policy", ends[:1], ends[1:], constants)
@@ -102,10 +105,19 @@ def test_a_policy_of_three_actions_treads_the_pedals(tmp_path: Path) -> None:
     assert (ranked.reason, ranked.duration) == (info["reason"], info["summary"]["duration"])
 
 
+def test_a_policy_exported_for_one_car_acts_for_all(policy: Path, tmp_path: Path) -> None:
+    observations = np.random.default_rng(2).normal(size=(3, 24)).astype(np.float32)
+    alone = OnnxPolicy(network(tmp_path / "alone.onnx", cars=1))
+    for row, action in zip(observations, alone(observations), strict=True):
+        assert (action == OnnxPolicy(policy)(row[None])[0]).all()
+    assert alone(observations).shape == (3, 2)
+
+
 def test_what_is_no_policy_is_refused(policy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = tmp_path / "text.onnx"
     text.write_text("no network")
     wrong = [text, network(tmp_path / "narrow.onnx", observations=7), network(tmp_path / "one.onnx", actions=1)]
+    wrong.append(network(tmp_path / "actor_critic.onnx", outputs=("action", "sum")))
     for file in wrong:
         with pytest.raises(BadPolicy):
             count_actions(file)

@@ -127,8 +127,21 @@ def _with_tracks(
     yields = perception.yields
     for number in range(SENSORS):
         if is_yielded_to(tracks[number]):
-            yields = math.floor(YIELD_TIME / params.car.ultrasonic.cycle)
+            yields = yield_cycles(params)
     return perception._replace(tracks=tracks, echoes=echoes, yields=yields)
+
+
+def yield_cycles(params: ParkingParams) -> int:
+    """Return for how many measurement cycles the vehicle stands for a moving object."""
+    return math.floor(YIELD_TIME / params.car.ultrasonic.cycle)
+
+
+def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
+    """Return whether an object that the map does not hold approaches by itself."""
+    for number in range(SENSORS):
+        if echoes[number].is_present and echoes[number].is_unexplained and echoes[number].closing_speed > MAX_REST:
+            return True
+    return False
 
 
 def _with_facing(

@@ -51,12 +51,14 @@ from controller_fmu.parking.path_planning import (
 )
 from controller_fmu.parking.perception import (
     chosen_number,
+    is_approached,
     is_driving_state,
     is_same_gap,
     perceive,
     planar_distance,
     search_reason,
     search_slots,
+    yield_cycles,
 )
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.pull_out import is_clear_ahead
@@ -163,9 +165,12 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         params.monitor,
         params.mapping,
     )
-    if memory.perception.yields > 0:
+    perception = memory.perception
+    if verdict.is_blocked and not verdict.is_mapped and is_approached(perception.echoes):
+        perception = perception._replace(yields=yield_cycles(params))
+    if perception.yields > 0:
         verdict = verdict._replace(speed_limit=0.0, is_blocked=True, is_mapped=False)
-    return memory._replace(progress=progress, verdict=verdict)
+    return memory._replace(progress=progress, verdict=verdict, perception=perception)
 
 
 def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:

@@ -63,6 +63,19 @@ def test_gradient_is_the_derivative_of_the_range(vehicle: Pose, number: int) -> 
         assert echo.gradient[state] == pytest.approx((high - low) / 2e-5, abs=1e-3)
 
 
+def test_behind_a_pillar_nothing_is_known_of_a_flank() -> None:
+    """The rear left sensor of a vehicle deep in the slot measures a flank; beside a pillar of 0.5 m it need be none."""
+    vehicle, slot = Pose(1.5, -3.2, 0.5 * math.pi), slot_at()
+    slot = slot._replace(depth=50.0)
+    sensor = sensor_pose(CAR.ultrasonic.mounts[9], CAR.ultrasonic.half_angle, vehicle)
+    assert predict_echo(begin_slot_filter(slot), slot, sensor).is_known
+    pillar = slot.behind._replace(start=-0.5, end_length=0.5, end_front=0.2)
+    beside = slot._replace(behind=pillar)
+    begun = begin_slot_filter(beside)
+    assert not predict_echo(begun, beside, sensor).is_known
+    assert begun.state[2] == 0.0, "so short a front tells no heading"
+
+
 def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     slot = slot_at(0.1, -0.05, 0.02)
     before = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)

@@ -129,6 +129,24 @@ def test_a_car_that_is_still_being_passed_tells_no_width_of_bays() -> None:
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(2.1, abs=0.05), "one bay, wider than its row's"
 
 
+def test_pillars_tell_no_width_of_bays() -> None:
+    """A car, a pillar and the gap: the pillar is 1.7 m from the car's middle."""
+    at = (7.0, 5.9, 1.2, -0.5)
+    members = tuple(RowMember(x, x + 1.8 if n in (0, 3) else x + 0.4, 1.5, True, True) for n, x in enumerate(at))
+    assert bay_width(SlotRow(members=(*members, *(RowMember(),) * 4), used=4)) == 0.0
+
+
+@pytest.mark.parametrize(("beyond", "edge"), [(0.15, 3.15), (0.5, 3.0), (-0.4, 2.6)])
+def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: float) -> None:
+    """The corner seen from the road is the pillar's; one that stands in the gap narrows it."""
+    row = SlotRow(Pose(), -1.0, used=2)
+    ahead = RowMember(3.0, 3.4, 1.0, True, True, 1.0, 1.0, 0.05, 0.05, 0.4, 0.4)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=ahead, front=1.0)
+    flank = side(3.0 + beyond, -3.5, 90.0, 3.0)
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
+    assert corrected.ahead.start == pytest.approx(edge)
+
+
 def side(x: float, y: float, turn: float, length: float) -> Landmark:
     """A car's side about (x, y), turned by ``turn`` [deg], seen in full."""
     half, sigma = 0.5 * length, math.radians(0.3)

@@ -217,10 +217,15 @@ def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: 
     return -min(0.5 * deviation * deviation, 2.0 * DECIDED)
 
 
+def is_too_short_for_car(length: float) -> bool:
+    """Return whether a side of ``length`` [m], 0 if unknown, is shorter than any car is wide: of a pillar or a post."""
+    return 0.0 < length < CAR_WIDTH - 3.0 * CAR_WIDTH_SIGMA
+
+
 def bay_width(row: SlotRow) -> float:
     """Return the mean distance [m] of neighbouring cars, from middle to middle, as far as bays are that narrow.
 
-    A car that is still being passed has no middle yet.
+    A car that is still being passed has no middle yet; pillars stand between bays.
     """
     total = 0.0
     n = 0.0
@@ -230,7 +235,8 @@ def bay_width(row: SlotRow) -> float:
             other = row.members[number + 1]
             distance = 0.5 * (one.start + one.end - other.start - other.end)
             is_complete = one.start_known and one.end_known and other.start_known and other.end_known
-            if distance < MAX_BAY and is_complete:
+            is_pillar = is_too_short_for_car(one.end - one.start) or is_too_short_for_car(other.end - other.start)
+            if distance < MAX_BAY and is_complete and not is_pillar:
                 total += distance
                 n += 1.0
     return total / n if n > 0.0 else 0.0

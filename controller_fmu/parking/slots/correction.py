@@ -10,10 +10,10 @@ from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
 from modelkit.maths import wrap_angle
 
-MIN_CORRECTION_GATE = 0.6
+MIN_CORRECTION_GATE = 0.2
 CORRECTION_GATE_SIGMA = 3.0
-"""A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, or 0.6 m
-(three times 0.2 m) where it is known better."""
+"""A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, and 0.2 m
+where it claims to be known better: corners err by 7 cm rms on the way in."""
 MIN_FLANK = 0.5
 """A shorter side [m] in the slot is no flank."""
 MIN_FACE = 0.2
@@ -46,7 +46,7 @@ def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float) -> 
     """Return a slot with the edge that a flank at ``x`` [m] along its row is.
 
     It bounds the gap wherever it stands in it: the corner seen from the road may have been moving. Outside the gap it
-    corrects a corner by no more than that is uncertain.
+    corrects a corner by no more than that is uncertain: a flank farther out stands behind a pillar.
     """
     middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
     if x < middle and x > candidate.behind.end - correction_gate(candidate.behind.end_sigma):

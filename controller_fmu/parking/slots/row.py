@@ -53,6 +53,10 @@ class RowMember(NamedTuple):
     start_sigma: float = 0.0
     """Standard deviation of its start, and of its end [m]."""
     end_sigma: float = 0.0
+    start_length: float = 0.0
+    """Length [m] of the side that begins at its start, and of the one that ends at its end, as sides are joined; 0:
+    unknown."""
+    end_length: float = 0.0
 
 
 class SlotRow(NamedTuple):
@@ -112,6 +116,8 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
         side * last.y,
         math.sqrt(landmark.start_variance if forward else landmark.end_variance),
         math.sqrt(landmark.end_variance if forward else landmark.start_variance),
+        last.x - first.x,
+        last.x - first.x,
     )
 
 
@@ -158,6 +164,8 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
             last.end_front,
             first.start_sigma,
             last.end_sigma,
+            first.start_length,
+            last.end_length,
         )
         return row._replace(members=tuple(joined if number == at else row.members[number] for number in range(MEMBERS)))
     if row.used >= MEMBERS:

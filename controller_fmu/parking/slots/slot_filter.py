@@ -28,9 +28,10 @@ from controller_fmu.parking.slots.candidate import (
     SlotCandidate,
     SlotType,
     into_heading,
+    is_too_short_for_car,
     row_point,
 )
-from controller_fmu.parking.slots.row import RowMember
+from controller_fmu.parking.slots.row import RowMember, SlotRow
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -80,10 +81,10 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
     state = (
         a.x,
         a.y,
-        slot.row.frame.heading + slot.row.side * _slope(slot.behind),
+        _front_heading(slot.row, slot.behind, slot.behind.end_length),
         b.x,
         b.y,
-        slot.row.frame.heading + slot.row.side * _slope(slot.ahead),
+        _front_heading(slot.row, slot.ahead, slot.ahead.start_length),
         end.x * into_x + end.y * into_y,
     )
     front = FRONT_SIGMA * FRONT_SIGMA
@@ -94,10 +95,10 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
     variances = (
         behind * cos * cos + front * sin * sin,
         behind * sin * sin + front * cos * cos,
-        _heading_variance(slot.behind),
+        _heading_variance(slot.behind, slot.behind.end_length),
         ahead * cos * cos + front * sin * sin,
         ahead * sin * sin + front * cos * cos,
-        _heading_variance(slot.ahead),
+        _heading_variance(slot.ahead, slot.ahead.start_length),
         END_SIGMA * END_SIGMA,
     )
     mixed = ((behind - front) * cos * sin, (ahead - front) * cos * sin)
@@ -108,12 +109,17 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
     return SlotFilter(state, covariance, into_x, into_y, True)
 
 
-def _slope(member: RowMember) -> float:
-    """Return the angle [rad] of a member's front to its row, deeper ahead positive."""
-    return math.atan2(member.end_front - member.start_front, max(member.end - member.start, FRONT_SIGMA))
+def _front_heading(row: SlotRow, member: RowMember, side_length: float) -> float:
+    """Return the heading [rad] of a member's front as it was passed; a pillar stands along the row."""
+    if is_too_short_for_car(side_length):
+        return row.frame.heading
+    length = max(member.end - member.start, FRONT_SIGMA)
+    return row.frame.heading + row.side * math.atan2(member.end_front - member.start_front, length)
 
 
-def _heading_variance(member: RowMember) -> float:
+def _heading_variance(member: RowMember, side_length: float) -> float:
+    if is_too_short_for_car(side_length):
+        return FRONT_SIGMA * FRONT_SIGMA
     length = max(member.end - member.start, FRONT_SIGMA)
     return 2.0 * FRONT_SIGMA * FRONT_SIGMA / (length * length)
 
@@ -204,10 +210,14 @@ def predict_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPos
         towards = -1.0 if number == 0 else 1.0
         at = AHEAD_OFFSET * number
         corner = Point(slot_filter.state[at], slot_filter.state[at + 1])
+        side_length = slot.behind.end_length if number == 0 else slot.ahead.start_length
+        is_pillar = is_too_short_for_car(side_length)
+        width = side_length if is_pillar else length
+        body = side_length if is_pillar else depth
         cos = math.cos(slot_filter.state[at + 2])
         sin = math.sin(slot_filter.state[at + 2])
-        far_front = Point(corner.x + towards * length * cos, corner.y + towards * length * sin)
-        far_flank = Point(corner.x - side * depth * sin, corner.y + side * depth * cos)
+        far_front = Point(corner.x + towards * width * cos, corner.y + towards * width * sin)
+        far_flank = Point(corner.x - side * body * sin, corner.y + side * body * cos)
         best = _nearer(best, predicted_range_to_segment(wide, corner, far_front), sensor, slot_filter, at)
         best = _nearer(best, predicted_range_to_segment(wide, corner, far_flank), sensor, slot_filter, at)
     if slot.depth < UNKNOWN_DEPTH:
@@ -260,8 +270,8 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         return slot
     state = slot_filter.state
     heading = slot.row.frame.heading
-    behind_turn = wrap_angle(state[2] - heading - slot.row.side * _slope(slot.behind))
-    ahead_turn = wrap_angle(state[AHEAD_OFFSET + 2] - heading - slot.row.side * _slope(slot.ahead))
+    behind_turn = wrap_angle(state[2] - _front_heading(slot.row, slot.behind, slot.behind.end_length))
+    ahead_turn = wrap_angle(state[AHEAD_OFFSET + 2] - _front_heading(slot.row, slot.ahead, slot.ahead.start_length))
     turn = 0.5 * (behind_turn + ahead_turn)
     middle = Point(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]))
     before = point_to_frame(middle.x, middle.y, slot.row.frame)

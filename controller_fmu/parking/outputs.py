@@ -1,15 +1,19 @@
 """Outputs of the parking system, from what it remembers."""
 
 from controller_fmu.common.driver_selection import MAX_OFFERS
+from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.map.landmark import LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.measurement.cycle import seconds
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.silent_sensor import is_silent
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.planning.planner import PathSegment
 from controller_fmu.parking.signals import (
     MOVE_SEGMENTS,
+    Alarm,
     DrivenMove,
     MoveSegment,
     ParkingOutput,
@@ -89,6 +93,29 @@ def prompt_of(memory: ParkingMemory, params: ParkingParams) -> int:
     return Prompt.NONE
 
 
+def alarm_of(memory: ParkingMemory) -> int:
+    """Return the warning on the display."""
+    if memory.state == ParkingState.FAILED:
+        return Alarm.FAILED
+    if memory.state == ParkingState.TAKEOVER:
+        return Alarm.TAKEN_OVER
+    if memory.verdict.is_blocked:
+        return Alarm.OBSTACLE
+    for number in range(SENSORS):
+        if is_silent(memory.perception.local_map.missed, number):
+            return Alarm.SENSOR_LOST
+    if memory.state != ParkingState.SEARCHING:
+        return Alarm.NONE
+    if memory.search.is_fast:
+        return Alarm.SLOW_DOWN
+    is_short = memory.search.rejected == Reason.SLOT_TOO_SHORT
+    is_shallow = memory.search.rejected == Reason.SLOT_TOO_SHALLOW
+    refuses = memory.search.slot.type == SlotType.NONE
+    if refuses and (is_short or is_shallow):
+        return Alarm.SLOT_TOO_SHORT if is_short else Alarm.SLOT_TOO_SHALLOW
+    return Alarm.NONE
+
+
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
     confirmed = 0
     for number in range(LANDMARKS):
@@ -108,6 +135,8 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
         goal=memory.plan.request.goal,
         slot=_slot_signals(memory.search.slot),
         offered=tuple(_slot_signals(memory.search.offered[number]) for number in range(MAX_OFFERS)),
+        alarm=alarm_of(memory),
+        missing=memory.search.missing,
         shown=memory.search.shown,
         move=_current_move(memory.progress),
     )

@@ -255,7 +255,8 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
             search = search._replace(slot=search.offered[number - 1] if number > 0 else SlotCandidate(), shown=number)
     stands = abs(inputs.measured_speed) <= params.threshold.standstill
     waits = stands and search.slot.type == SlotType.NONE
-    return memory._replace(search=search._replace(waited=search.waited + dt_ns if waits else 0))
+    is_fast = abs(inputs.measured_speed) > params.slot.speed
+    return memory._replace(search=search._replace(waited=search.waited + dt_ns if waits else 0, is_fast=is_fast))
 
 
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
@@ -325,7 +326,7 @@ def _without_slot(search: SearchProgress, found: SlotCandidate) -> SearchProgres
     offered = tuple(
         SlotCandidate() if is_overlapping(offered[number], found) else offered[number] for number in range(MAX_OFFERS)
     )
-    return search._replace(offered=offered, rejected=found.reason)
+    return search._replace(offered=offered, rejected=found.reason, missing=found.missing)
 
 
 def is_overlapping(slot: SlotCandidate, found: SlotCandidate) -> bool:

@@ -1,5 +1,6 @@
 """Outputs of the parking system: those that every controller has, and its search, plan and drive."""
 
+from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.common.driver_selection import MAX_OFFERS, DriverSelection
@@ -51,6 +52,22 @@ class ParkingSystemInput(NamedTuple):
     driver_selection: Annotated[DriverSelection, Group("selection by the driver on the display")] = DriverSelection()
 
 
+class Alarm(IntEnum):
+    """Warnings on the display; the numbers are those of `apa`."""
+
+    NONE = 0
+    SLOW_DOWN = 1
+    """Too fast to search."""
+    SLOT_TOO_SHORT = 2
+    OBSTACLE = 3
+    """The vehicle stands before something in the way."""
+    FAILED = 4
+    TAKEN_OVER = 5
+    SLOT_TOO_SHALLOW = 6
+    SENSOR_LOST = 7
+    """A sensor is silent; the system goes on without it."""
+
+
 class SlotSignals(NamedTuple):
     """The slot found."""
 
@@ -95,6 +112,8 @@ class ParkingSignals(NamedTuple):
     goal: Annotated[Pose, Group("pose to park at")] = Pose()
     slot: SlotSignals = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
+    alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = Alarm.NONE
+    missing: Annotated[float, Signal("m", "length that the last slot refused lacks", 0.0)] = 0.0
     shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
     move: DrivenMove = DrivenMove()
 

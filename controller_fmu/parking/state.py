@@ -30,6 +30,10 @@ class SearchProgress(NamedTuple):
     """For the driver [ns]."""
     rejected: int = Reason.NONE
     """Why the last candidate was not taken."""
+    missing: float = 0.0
+    """Length [m] that it lacked."""
+    is_fast: bool = False
+    """The driver drives faster than slots can be searched."""
     pose: Pose = Pose()
     """Where the slot was shown first."""
     stand: Pose = Pose()

@@ -5,13 +5,16 @@ import pytest
 from controller_fmu.common.params import Longitudinal
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.map.local_map import LandmarkMap
+from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes
 from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.work import PlanningWork
-from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.state import ParkingMemory
+from controller_fmu.parking.signals import Alarm, ParkingSystemInput
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 from controller_fmu.parking.system import parking_sample
 from modelkit.store import new_store
 from modelkit.vocabulary import Prompt
@@ -65,3 +68,32 @@ def test_too_fast_for_too_long_is_a_fault(params: ParkingParams, speed: float, r
         if sample < 25:
             assert memory.reason == Reason.NONE
     assert memory.reason == reason
+
+
+SILENT = LandmarkMap(missed=MissedEchoes((0,) * 6 + (MISSED_ECHOES,) + (0,) * 5))
+SEARCHING = ParkingMemory(state=ParkingState.SEARCHING)
+
+
+@pytest.mark.parametrize(
+    ("memory", "alarm"),
+    [
+        (REVERSING, Alarm.NONE),
+        (BLOCKED, Alarm.OBSTACLE),
+        (REVERSING._replace(state=ParkingState.FAILED), Alarm.FAILED),
+        (REVERSING._replace(state=ParkingState.TAKEOVER), Alarm.TAKEN_OVER),
+        (
+            REVERSING._replace(perception=Perception(local_map=LandmarkMap(missed=MissedEchoes(SILENT)))),
+            Alarm.SENSOR_LOST,
+        ),
+        (SEARCHING, Alarm.NONE),
+        (SEARCHING._replace(search=SearchProgress(is_fast=True)), Alarm.SLOW_DOWN),
+        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHORT)), Alarm.SLOT_TOO_SHORT),
+        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHALLOW)), Alarm.SLOT_TOO_SHALLOW),
+        (
+            SEARCHING._replace(search=SearchProgress(SlotCandidate(SlotType.PARALLEL), rejected=Reason.SLOT_TOO_SHORT)),
+            Alarm.NONE,
+        ),
+    ],
+)
+def test_the_display_warns(memory: ParkingMemory, alarm: Alarm) -> None:
+    assert parking_outputs(memory, OWN).parking.alarm == alarm

@@ -90,6 +90,7 @@ def test_a_gap_that_is_too_short_is_rejected() -> None:
     kerb = Box(3.0, -1.9, 0.0, 40.0, 0.02)
     slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(6.2, -0.9, 0.0, 4.4, 1.8), kerb], 3, 5.5)
     assert slot.reason != Reason.NONE
+    assert slot.missing == pytest.approx(CAR.wheelbase + CAR.front_overhang + CAR.rear_overhang + 0.5 - 4.0, abs=0.15)
 
 
 def test_wide_open_space_is_no_slot() -> None:

@@ -82,6 +82,8 @@ class SlotCandidate(NamedTuple):
     """Of the road against the frame's x axis: in an angled row the frame is square to the direction into the slot."""
     is_nose_in: bool = False
     is_external: bool = False
+    missing: float = 0.0
+    """Length [m] along the row that it lacks."""
 
 
 def find_slot(
@@ -140,8 +142,10 @@ def _candidate(
         return SlotCandidate()
     found = SlotCandidate(row=row, behind=behind, ahead=ahead, front=0.5 * (behind.end_front + ahead.start_front))
     found = found._replace(depth=gap_depth(found, landmarks, outline, params), bay=bay_width(row))
-    fits_parallel = width >= 2.0 * outline.half_length + slot.room_along
-    fits_perpendicular = width >= 2.0 * outline.half_width + slot.room_across
+    least_length = 2.0 * outline.half_length + slot.room_along
+    least_width = 2.0 * outline.half_width + slot.room_across
+    fits_parallel = width >= least_length
+    fits_perpendicular = width >= least_width
     ratio = log_likelihood_ratio(found)
     parallel = ratio > DECIDED or (ratio > -DECIDED and fits_parallel and not fits_perpendicular)
     parallel = parallel or (abs(ratio) <= DECIDED and fits_parallel)
@@ -157,7 +161,8 @@ def _candidate(
     kind = SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR
     leads_on = row.slope * row.side > 0.0
     is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
-    return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in)
+    missing = max((least_length if parallel else least_width) - width, 0.0)
+    return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in, missing=missing)
 
 
 def _as_driveway(
@@ -180,7 +185,7 @@ def _as_driveway(
         return candidate
     needed = 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
     reason = Reason.SLOT_TOO_SHALLOW if candidate.depth < needed else Reason.NONE
-    return candidate._replace(type=SlotType.PERPENDICULAR, reason=reason)
+    return candidate._replace(type=SlotType.PERPENDICULAR, reason=reason, missing=0.0)
 
 
 def log_likelihood_ratio(candidate: SlotCandidate) -> float:

@@ -13,9 +13,9 @@ from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.planning.planner import PathSegment
 from controller_fmu.parking.signals import (
     MOVE_SEGMENTS,
-    Alarm,
     DrivenMove,
     MoveSegment,
+    ParkingAlarm,
     ParkingOutput,
     ParkingSignals,
     SlotSignals,
@@ -96,24 +96,24 @@ def prompt_of(memory: ParkingMemory, params: ParkingParams) -> int:
 def alarm_of(memory: ParkingMemory) -> int:
     """Return the warning on the display."""
     if memory.state == ParkingState.FAILED:
-        return Alarm.FAILED
+        return ParkingAlarm.FAILED
     if memory.state == ParkingState.TAKEOVER:
-        return Alarm.TAKEN_OVER
+        return ParkingAlarm.TAKEN_OVER
     if memory.verdict.is_blocked:
-        return Alarm.OBSTACLE
+        return ParkingAlarm.OBSTACLE
     for number in range(SENSORS):
         if is_silent(memory.perception.local_map.missed, number):
-            return Alarm.SENSOR_LOST
+            return ParkingAlarm.SENSOR_LOST
     if memory.state != ParkingState.SEARCHING:
-        return Alarm.NONE
+        return ParkingAlarm.NONE
     if memory.search.is_fast:
-        return Alarm.SLOW_DOWN
+        return ParkingAlarm.SLOW_DOWN
     is_short = memory.search.rejected == Reason.SLOT_TOO_SHORT
     is_shallow = memory.search.rejected == Reason.SLOT_TOO_SHALLOW
     refuses = memory.search.slot.type == SlotType.NONE
     if refuses and (is_short or is_shallow):
-        return Alarm.SLOT_TOO_SHORT if is_short else Alarm.SLOT_TOO_SHALLOW
-    return Alarm.NONE
+        return ParkingAlarm.SLOT_TOO_SHORT if is_short else ParkingAlarm.SLOT_TOO_SHALLOW
+    return ParkingAlarm.NONE
 
 
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:

@@ -52,7 +52,7 @@ class ParkingSystemInput(NamedTuple):
     driver_selection: Annotated[DriverSelection, Group("selection by the driver on the display")] = DriverSelection()
 
 
-class Alarm(IntEnum):
+class ParkingAlarm(IntEnum):
     """Warnings on the display; the numbers are those of `apa`."""
 
     NONE = 0
@@ -60,7 +60,7 @@ class Alarm(IntEnum):
     """Too fast to search."""
     SLOT_TOO_SHORT = 2
     OBSTACLE = 3
-    """The vehicle stands before something in the way."""
+    """The vehicle stands before an obstacle."""
     FAILED = 4
     TAKEN_OVER = 5
     SLOT_TOO_SHALLOW = 6
@@ -112,7 +112,7 @@ class ParkingSignals(NamedTuple):
     goal: Annotated[Pose, Group("pose to park at")] = Pose()
     slot: SlotSignals = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
-    alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = Alarm.NONE
+    alarm: Annotated[int, Signal("1", "warning on the display", states=ParkingAlarm)] = ParkingAlarm.NONE
     missing: Annotated[float, Signal("m", "length that the last slot refused lacks", 0.0)] = 0.0
     shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
     move: DrivenMove = DrivenMove()

@@ -12,7 +12,7 @@ from controller_fmu.parking.monitor.fault_monitor import FaultClocks
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.work import PlanningWork
-from controller_fmu.parking.signals import Alarm, ParkingSystemInput
+from controller_fmu.parking.signals import ParkingAlarm, ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 from controller_fmu.parking.system import parking_sample
@@ -77,23 +77,20 @@ SEARCHING = ParkingMemory(state=ParkingState.SEARCHING)
 @pytest.mark.parametrize(
     ("memory", "alarm"),
     [
-        (REVERSING, Alarm.NONE),
-        (BLOCKED, Alarm.OBSTACLE),
-        (REVERSING._replace(state=ParkingState.FAILED), Alarm.FAILED),
-        (REVERSING._replace(state=ParkingState.TAKEOVER), Alarm.TAKEN_OVER),
-        (
-            REVERSING._replace(perception=Perception(local_map=LandmarkMap(missed=MissedEchoes(SILENT)))),
-            Alarm.SENSOR_LOST,
-        ),
-        (SEARCHING, Alarm.NONE),
-        (SEARCHING._replace(search=SearchProgress(is_fast=True)), Alarm.SLOW_DOWN),
-        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHORT)), Alarm.SLOT_TOO_SHORT),
-        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHALLOW)), Alarm.SLOT_TOO_SHALLOW),
+        (REVERSING, ParkingAlarm.NONE),
+        (BLOCKED, ParkingAlarm.OBSTACLE),
+        (REVERSING._replace(state=ParkingState.FAILED), ParkingAlarm.FAILED),
+        (REVERSING._replace(state=ParkingState.TAKEOVER), ParkingAlarm.TAKEN_OVER),
+        (REVERSING._replace(perception=Perception(local_map=SILENT)), ParkingAlarm.SENSOR_LOST),
+        (SEARCHING, ParkingAlarm.NONE),
+        (SEARCHING._replace(search=SearchProgress(is_fast=True)), ParkingAlarm.SLOW_DOWN),
+        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHORT)), ParkingAlarm.SLOT_TOO_SHORT),
+        (SEARCHING._replace(search=SearchProgress(rejected=Reason.SLOT_TOO_SHALLOW)), ParkingAlarm.SLOT_TOO_SHALLOW),
         (
             SEARCHING._replace(search=SearchProgress(SlotCandidate(SlotType.PARALLEL), rejected=Reason.SLOT_TOO_SHORT)),
-            Alarm.NONE,
+            ParkingAlarm.NONE,
         ),
     ],
 )
-def test_the_display_warns(memory: ParkingMemory, alarm: Alarm) -> None:
+def test_the_display_warns(memory: ParkingMemory, alarm: ParkingAlarm) -> None:
     assert parking_outputs(memory, OWN).parking.alarm == alarm

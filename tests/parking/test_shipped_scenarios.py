@@ -22,11 +22,7 @@ SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENARIOS.glob(f"{kind}-*.yaml"))
 OTHERWISE = frozenset(
     {
-        "apa-over-speed",
-        "apa-parallel-deep",
-        "apa-perpendicular-walls",
         "apa-slot-too-short",
-        "cicap-pillar",
         "valet-external-slot",
     }
 )

@@ -13,7 +13,7 @@ from modelkit.maths import wrap_angle
 MIN_CORRECTION_GATE = 0.2
 CORRECTION_GATE_SIGMA = 3.0
 """A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, and 0.2 m
-where it claims to be known better: corners err by 7 cm rms on the way in."""
+where it claims to be known better: corners err by 7 cm rms after entering."""
 MIN_FLANK = 0.5
 """A shorter side [m] in the slot is no flank."""
 MIN_FACE = 0.2

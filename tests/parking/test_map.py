@@ -198,11 +198,16 @@ def test_a_side_does_not_go_on_where_the_sensor_measures_through() -> None:
     assert expected_range(landmarks, sensor, kerb, 1.8, PARAMS) == kerb
 
 
-@pytest.mark.parametrize(("confirmations", "silent"), [(FACING_ECHOES, False), (2 * FACING_ECHOES, True)])
-def test_who_stood_before_the_bumper_and_left_proves_no_sensor_silent(confirmations: int, silent: bool) -> None:
+@pytest.mark.parametrize(
+    ("confirmations", "half", "silent"),
+    [(FACING_ECHOES, 2.0, False), (2 * FACING_ECHOES, 2.0, True), (2 * FACING_ECHOES, 0.2, False)],
+)
+def test_a_pedestrian_who_left_proves_no_sensor_silent(confirmations: int, half: float, silent: bool) -> None:
     """A surface 1 m behind the car that one of two sensors does not detect."""
     mount = CAR.ultrasonic.mounts[5]
-    surface = Landmark(LandmarkType.SEGMENT, mount.x - 1.0, mount.y, math.pi / 2, xx=1e-4, yy=1e-4, start=-2.0, end=2.0)
+    surface = Landmark(
+        LandmarkType.SEGMENT, mount.x - 1.0, mount.y, math.pi / 2, xx=1e-4, yy=1e-4, start=-half, end=half
+    )
     known = (surface._replace(confirmations=confirmations), *(Landmark(),) * (LANDMARKS - 1))
     local_map = LandmarkMap(landmarks=known, begun=True)
     for _ in range(MISSED_ECHOES):

@@ -15,10 +15,11 @@ from controller_fmu.parking.map.chain_update import (
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, length_of
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.visibility import (
+    BODY_BETWEEN,
     contradict,
     is_contradicted,
     is_in_reach,
@@ -153,8 +154,7 @@ def expected_range(
 def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map with those landmarks contradicted that had to be detected before this echo, or at all.
 
-    A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more. But a
-    surface that came before the bumpers may have been a pedestrian, who left: it proves no sensor silent.
+    A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more.
     """
     sensor = measurement.sensor
     is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
@@ -167,7 +167,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
             if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
-                is_missed = is_missed or (not is_echo and landmark.confirmations > FACING_ECHOES)
+                is_missed = is_missed or (not is_echo and stays(landmark))
                 if is_credible:
                     after = contradict(landmark, predict_range(sensor, landmark), params)
             local_map = local_map._replace(
@@ -175,6 +175,12 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             )
     missed = count_missed_echo(local_map.missed, measurement.number, measurement.status, is_missed)
     return local_map._replace(missed=missed)
+
+
+def stays(landmark: Landmark) -> bool:
+    """Return whether a landmark is no pedestrian, who may leave: long, and passed, not what came before a bumper."""
+    is_long = landmark.type == LandmarkType.SEGMENT and length_of(landmark) > BODY_BETWEEN
+    return is_long and landmark.confirmations > FACING_ECHOES
 
 
 def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:

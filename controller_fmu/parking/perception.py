@@ -52,7 +52,7 @@ from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
-from controller_fmu.parking.slots.slot_filter import predict_slot, update_slot
+from controller_fmu.parking.slots.slot_filter import SlotFilter, predict_slot, update_slot
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 from modelkit.vocabulary import Pose
 
@@ -83,7 +83,8 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     memory = memory._replace(perception=memory.perception._replace(yields=max(memory.perception.yields - 1, 0)))
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(SENSORS))
-        memory = memory._replace(search=_with_slot(memory, inputs, params))
+        slot_filter = _update_slot_filter(memory, inputs, params)
+        memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
         return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
@@ -99,14 +100,14 @@ def _with_measurements(perception: Perception, inputs: ParkingSystemInput, param
     return perception._replace(pose=inputs.odometry)
 
 
-def _with_slot(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SearchProgress:
-    """Return the search with its slot after a measurement cycle on the way in."""
+def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SlotFilter:
+    """Return what is known of the slot after a measurement cycle, as the vehicle enters it."""
     search = memory.search
     before = memory.perception.pose
     sensors = params.car.ultrasonic
     driven = planar_distance(inputs.odometry.x, inputs.odometry.y, before.x, before.y)
     if not search.slot_filter.is_begun or driven <= 0.0:
-        return search
+        return search.slot_filter
     slot_filter = predict_slot(search.slot_filter, inputs.odometry, driven, params.mapping)
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     for number in range(SENSORS):
@@ -114,7 +115,7 @@ def _with_slot(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parkin
         if reading_status(reading, sensors) == ReadingStatus.ECHO:
             sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
             slot_filter = update_slot(slot_filter, search.slot, sensor, reading, variance, params.mapping.gate)
-    return search._replace(slot_filter=slot_filter)
+    return slot_filter
 
 
 def _with_tracks(
@@ -243,9 +244,10 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
 
 def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
     """Return the memory after a sample of the slot search; a slot found stays until a better estimate replaces it."""
-    search = memory.search
-    search = search._replace(distance=search.distance + abs(inputs.measured_speed) * dt_ns * 1e-9)
+    stands = abs(inputs.measured_speed) <= params.threshold.standstill
+    distance = memory.search.distance + abs(inputs.measured_speed) * dt_ns * 1e-9
     if memory.perception.cycle.is_new:
+        search = memory.search
         if inputs.external_slot.kind != SlotKind.NONE:
             search = _with_external(search, memory, inputs, params)
         else:
@@ -253,10 +255,10 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
             search = _with_side(search, memory, -1.0, params)
             number = chosen_number(search.offered, inputs.driver_selection)
             search = search._replace(slot=search.offered[number - 1] if number > 0 else SlotCandidate(), shown=number)
-    stands = abs(inputs.measured_speed) <= params.threshold.standstill
-    waits = stands and search.slot.type == SlotType.NONE
+        memory = memory._replace(search=search)
+    waited = memory.search.waited + dt_ns if stands and memory.search.slot.type == SlotType.NONE else 0
     is_fast = abs(inputs.measured_speed) > params.slot.speed
-    return memory._replace(search=search._replace(waited=search.waited + dt_ns if waits else 0, is_fast=is_fast))
+    return memory._replace(search=memory.search._replace(distance=distance, waited=waited, is_fast=is_fast))
 
 
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:

@@ -88,7 +88,8 @@ def parking_sample(
     perceives = not is_off or is_slot_kept(memory) or (wants_out and state == ParkingState.STANDBY)
     if perceives and input_fault(inputs) == Reason.NONE:
         memory = perceive(memory, inputs, params, dt_ns)
-        memory = forget_what_left(memory, inputs, params) if is_off else memory
+        if is_off:
+            memory = forget_what_left(memory, inputs, params)
     if state == ParkingState.SEARCHING:
         memory = search_slots(memory, inputs, params, dt_ns)
         memory = memory._replace(reason=_search_fault(memory, inputs, params))

@@ -7,7 +7,11 @@ MIN_EDGE_SQUARE = 1e-12
 
 
 def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
-    """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less."""
+    """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less.
+
+    Where the infinite line misses the car, the car's corner nearest to it decides if it lies beside the edge;
+    else an end of the edge does.
+    """
     half_length = car.half_length
     half_width = car.half_width
     low = ax if ax < bx else bx
@@ -21,17 +25,20 @@ def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutlin
     dx = bx - ax
     dy = by - ay
     across = ax * dy - ay * dx
-    if apart_x == 0.0 and apart_y == 0.0 and abs(across) <= half_length * abs(dy) + half_width * abs(dx):
+    beyond = abs(across) - half_length * abs(dy) - half_width * abs(dx)
+    square = dx * dx + dy * dy
+    if beyond > 0.0 and square > MIN_EDGE_SQUARE:
+        side = 1.0 if across > 0.0 else -1.0
+        corner_x = side * (half_length if dy > 0.0 else -half_length)
+        corner_y = side * (-half_width if dx > 0.0 else half_width)
+        along = (corner_x - ax) * dx + (corner_y - ay) * dy
+        if 0.0 < along < square:
+            gap = beyond * beyond / square
+            return gap if gap < best else best
+    elif beyond <= 0.0 and apart_x == 0.0 and apart_y == 0.0:
         return 0.0
     best = _point_distance(ax, ay, half_length, half_width, best)
-    best = _point_distance(bx, by, half_length, half_width, best)
-    square = dx * dx + dy * dy
-    if square <= MIN_EDGE_SQUARE:
-        return best
-    best = _vertex_distance(half_length - ax, half_width - ay, dx, dy, square, best)
-    best = _vertex_distance(-half_length - ax, half_width - ay, dx, dy, square, best)
-    best = _vertex_distance(half_length - ax, -half_width - ay, dx, dy, square, best)
-    return _vertex_distance(-half_length - ax, -half_width - ay, dx, dy, square, best)
+    return _point_distance(bx, by, half_length, half_width, best)
 
 
 def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:
@@ -40,14 +47,4 @@ def _point_distance(x: float, y: float, half_length: float, half_width: float, b
     dx = dx if dx > 0.0 else 0.0
     dy = dy if dy > 0.0 else 0.0
     gap = dx * dx + dy * dy
-    return gap if gap < best else best
-
-
-def _vertex_distance(cx: float, cy: float, dx: float, dy: float, square: float, best: float) -> float:
-    """Return the squared distance of a vertex, seen from a, to the line that leads by (dx, dy) to b, or ``best``."""
-    t = (cx * dx + cy * dy) / square
-    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
-    x = cx - t * dx
-    y = cy - t * dy
-    gap = x * x + y * y
     return gap if gap < best else best

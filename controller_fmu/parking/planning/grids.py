@@ -229,15 +229,27 @@ def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
     """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the search region."""
     count = 0
     for vertex in range(work.counts[VERTEX_COUNT]):
-        after = next_corner(work, vertex)
-        if work.corner_of[vertex] > 0 and not _leads_back(work, vertex, after):
-            count = add_edge(work, count, _seen_from(origin, work, vertex), _seen_from(origin, work, after), region)
+        if work.corner_of[vertex] > 0:
+            after = next_corner(work, vertex)
+            if not is_repeated(work, vertex, after):
+                count = add_edge(work, count, _seen_from(origin, work, vertex), _seen_from(origin, work, after), region)
     return count
 
 
-def _leads_back(work: PlanningWork, vertex: int, after: int) -> bool:
-    """Return whether the edge from ``vertex`` is that of a line, a polygon of two vertices, once more."""
-    return after == vertex - 1 and (after == 0 or work.corner_of[after - 1] != work.corner_of[vertex])
+def is_repeated(work: PlanningWork, vertex: int, after: int) -> bool:
+    """Return whether one of the three edges before in the same polygon joins the same two points: one of no area."""
+    for back in range(1, 4):
+        if vertex >= back and work.corner_of[vertex - back] == work.corner_of[vertex]:
+            a = vertex - back
+            b = a + 1
+            is_start = _is_at(work, vertex, a) or _is_at(work, vertex, b)
+            if is_start and (_is_at(work, after, a) or _is_at(work, after, b)):
+                return True
+    return False
+
+
+def _is_at(work: PlanningWork, vertex: int, other: int) -> bool:
+    return work.corner_x[vertex] == work.corner_x[other] and work.corner_y[vertex] == work.corner_y[other]
 
 
 def _seen_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:

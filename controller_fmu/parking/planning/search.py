@@ -5,7 +5,7 @@ import math
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, cheapest_word, try_analytic_expansion
 from controller_fmu.parking.planning.collision import free_distance
-from controller_fmu.parking.planning.grids import holonomic_cost_to_go
+from controller_fmu.parking.planning.grids import UNREACHABLE, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
 from controller_fmu.parking.planning.reeds_shepp import list_words
 from controller_fmu.parking.planning.search_tree import (
@@ -18,7 +18,10 @@ from controller_fmu.parking.planning.search_tree import (
     set_state,
 )
 from controller_fmu.parking.planning.work import (
+    BEST_COST,
     BEST_NODE,
+    BEST_PATH_COST,
+    BEST_SEGMENT_COUNT,
     BUCKETS,
     CROWDING_CELLS,
     EVALUATIONS,
@@ -118,6 +121,9 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
         cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
         set_cost_estimate(work, node, shortest if shortest > cost_to_go else cost_to_go)
         set_state(work, node, EVALUATED)
+    if work.node_cost[node] + work.node_cost_estimate[node] >= bound_cost(work):
+        set_state(work, node, CLOSED)
+        return True
     crowd = problem.stage.resolution.crowding_cost * work.crowding[region_of(pose, problem)]
     bucket = bucket_of(
         work.node_cost[node] + problem.stage.resolution.heuristic_weight * work.node_cost_estimate[node] + crowd
@@ -126,6 +132,13 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
         return False
     push_bucket(work, node, bucket)
     return True
+
+
+def bound_cost(work: PlanningWork) -> float:
+    """Return the cost [m] of the best path found, by this search or one before it; nodes that cost more are no use."""
+    known = work.values[BEST_PATH_COST] if work.counts[BEST_SEGMENT_COUNT] > 0 else UNREACHABLE
+    found = work.values[BEST_COST] if work.counts[BEST_NODE] != NONE else UNREACHABLE
+    return min(known, found)
 
 
 def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:

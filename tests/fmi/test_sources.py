@@ -53,7 +53,7 @@ DRIVES = [
     ("guo2015-case4",),
     ("valet-parallel",),
     ("valet-parallel", "controller.system=valet_large"),
-    ("apa-parallel", "controller.system=parking"),
+    ("apa-pull-out", "controller.system=parking"),
 ]
 """Scenarios and overrides whose signals are the inputs of the models in them."""
 needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")

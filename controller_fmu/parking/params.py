@@ -41,13 +41,11 @@ class FinalPoseParams(NamedTuple):
     """How near to the goal the vehicle counts as parked."""
 
     position: Annotated[float, Signal("m", "along and across the goal's heading", 0.001, 1.0, HOUSE)] = 0.06
-    heading: Annotated[float, Signal("rad", "heading; GB/T 41630 3 deg less two sigma", 0.001, 0.5, HOUSE)] = (
+    heading: Annotated[float, Signal("rad", "heading; GB/T 41630 3 deg less two sigma of a row", 0.001, 0.5, HOUSE)] = (
         1.3 * pi / 180.0
     )
     accepted: Annotated[float, Signal("m", "position, where no path leads nearer", 0.001, 1.0, HOUSE)] = 0.15
-    accepted_heading: Annotated[float, Signal("rad", "heading, the same; GB/T 41630 3 deg", 0.001, 0.5, HOUSE)] = (
-        2.5 * pi / 180.0
-    )
+    accepted_heading: Annotated[float, Signal("rad", "heading, the same", 0.001, 0.5, "GB/T 41630")] = 3.0 * pi / 180.0
 
 
 class ParkingSystem(IntEnum):

@@ -45,7 +45,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
-from controller_fmu.parking.slots.goal import goal_pose, least_depth, overhang_of
+from controller_fmu.parking.slots.goal import goal_pose, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.slot_filter import slot_of_filter
 from controller_fmu.parking.state import ParkingMemory, SearchProgress
 from modelkit.car import largest_curvature
@@ -205,15 +205,19 @@ def corrected_slot(
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether a vehicle at ``pose`` is parked, if not as finely as was meant."""
+    """Return whether a vehicle at ``pose`` is surely parked, as far as the slot is known, if not as finely as meant."""
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     goal = goal_pose(slot, outline, params.slot)
     room = 0.5 * (slot.ahead.start - slot.behind.end)
     along = params.final.accepted
     if slot.type == SlotType.PARALLEL:
         along = max(along, room - outline.half_length)
-    near = is_near(pose, goal, along, params.final.accepted, params.final.accepted_heading)
-    return near and overhang_of(slot, outline, pose) < params.slot.stand_out
+    across = params.final.accepted
+    if slot.type == SlotType.PERPENDICULAR:
+        across -= params.slot.confidence * slot.middle_sigma
+    turn = params.final.accepted_heading - params.slot.confidence * slot.row.heading_sigma
+    near = is_near(pose, goal, along, across, turn)
+    return near and overhang_of(slot, outline, pose) < most_overhang(slot, outline, params.slot)
 
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:

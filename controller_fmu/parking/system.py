@@ -47,6 +47,7 @@ from controller_fmu.parking.path_planning import (
     is_near,
     max_manoeuvres,
     slot_in_map,
+    stands_in_slot,
     with_way_out,
 )
 from controller_fmu.parking.perception import (
@@ -258,8 +259,10 @@ def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parki
         return True
     goal = memory.plan.request.goal
     if memory.strategy == Strategy.SLOT:
-        outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-        goal = goal_pose(slot_in_map(memory, inputs.odometry, params), outline, params.slot)
+        slot = slot_in_map(memory, inputs.odometry, params)
+        if not stands_in_slot(slot, inputs.odometry, params):
+            return False
+        goal = goal_pose(slot, vehicle_outline(params.car, params.plan.curvature_fraction), params.slot)
     along = params.final.position + abs(params.drive.rolling_offset)
     return is_near(inputs.odometry, goal, along, params.final.position, params.final.heading)
 

@@ -76,6 +76,16 @@ def test_behind_a_pillar_nothing_is_known_of_a_flank() -> None:
     assert begun.state[2] == 0.0, "so short a front tells no heading"
 
 
+def test_what_the_slot_is_unsure_follows_from_both_corners() -> None:
+    slot = slot_at()
+    drifted = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)
+    known = slot_of_filter(slot, drifted, OUTLINE)
+    for found, states in ((known.middle_sigma, [0, 3]), (known.front_sigma, [1, 4])):
+        mean = np.zeros(STATE_COUNT)
+        mean[states] = 0.5
+        assert found == pytest.approx(math.sqrt(mean @ matrix(drifted) @ mean))
+
+
 def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     slot = slot_at(0.1, -0.05, 0.02)
     before = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)

@@ -11,6 +11,8 @@ from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkTyp
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import without_inside
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.path_planning import stands_in_slot
 from controller_fmu.parking.slots.candidate import (
     DECIDED,
     SlotCandidate,
@@ -193,6 +195,39 @@ def test_a_vehicle_stands_on_the_mean_of_its_neighbours_fronts() -> None:
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead, front=2.4)
     goal = goal_pose(slot, OUTLINE, SlotParams())
     assert overhang_of(slot, OUTLINE, goal) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_row_runs_half_way_between_the_road_and_its_cars() -> None:
+    """Both cars are turned by 4 deg, the line through them by 0: the road is between, the row too."""
+    row = row_beside([side(0.0, 0.0, 4.0, 4.4), side(-10.0, 0.0, 4.0, 4.4)], 0.0)
+    alone = row_beside([side(0.0, 0.0, 4.0, 4.4)], 0.0)
+    assert 2.0 < math.degrees(row.frame.heading) < 3.0
+    assert 0.2 < math.degrees(row.heading_sigma) < math.degrees(alone.heading_sigma) < 1.2
+
+
+@pytest.mark.parametrize(
+    ("out", "turn", "front_sigma", "heading_sigma", "claims"),
+    [
+        (0.1, 0.0, 0.0, 0.0, True),
+        (0.1, 0.0, 0.03, 0.0, False),
+        (0.0, 2.5, 0.0, 0.0, True),
+        (0.0, 2.5, 0.0, 0.6, False),
+        (0.0, 1.5, 0.03, 0.6, True),
+    ],
+)
+def test_parked_is_claimed_only_where_two_sigma_of_the_slot_allow_it(
+    out: float, turn: float, front_sigma: float, heading_sigma: float, claims: bool
+) -> None:
+    members = (RowMember(2.6, 4.4, 2.0, True, True, 2.0, 2.0), RowMember(-1.8, 0.0, 2.0, True, True, 2.0, 2.0))
+    row = SlotRow(Pose(), -1.0, members + (RowMember(),) * 6, 2, heading_sigma=math.radians(heading_sigma))
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=members[1], ahead=members[0], front=2.0)
+    slot = slot._replace(front_sigma=front_sigma)
+    goal = goal_pose(slot, OUTLINE, SlotParams())
+    heading = goal.heading + math.radians(turn)
+    ahead = OUTLINE.centre_ahead
+    centre = Pose(goal.x + ahead * math.cos(goal.heading), goal.y + ahead * math.sin(goal.heading) + out, heading)
+    pose = centre._replace(x=centre.x - ahead * math.cos(heading), y=centre.y - ahead * math.sin(heading))
+    assert stands_in_slot(slot, pose, ParkingParams()) == claims
 
 
 def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:

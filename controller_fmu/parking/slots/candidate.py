@@ -76,6 +76,9 @@ class SlotCandidate(NamedTuple):
     """Line of the neighbours' fronts, across the row."""
     depth: float = UNKNOWN_DEPTH
     """Behind that line."""
+    front_sigma: float = 0.0
+    """Standard deviation of that line across the row [m], and of the middle of the gap along it."""
+    middle_sigma: float = 0.0
     bay: float = 0.0
     """Distance of two cars that stand perpendicular, from middle to middle [m]; 0: the row does not repeat."""
     slope: float = 0.0

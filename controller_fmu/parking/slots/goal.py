@@ -40,7 +40,18 @@ def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
     """Return how deep [m] a slot of this type must be for the vehicle to stand in it, as far out as it may."""
     if candidate.type == SlotType.PARALLEL:
         return 2.0 * outline.half_width
-    return 2.0 * outline.half_length + params.distance_behind - params.stand_out
+    return 2.0 * outline.half_length + params.distance_behind - most_overhang(candidate, outline, params)
+
+
+def most_overhang(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
+    """Return how far [m] a vehicle may be found to stand out: GB/T's limit less what front and direction are unsure.
+
+    Turned by the direction's error a corner stands out by half of the vehicle's side along the row times that.
+    """
+    half = outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width
+    by_turn = half * candidate.row.heading_sigma
+    sigma = math.sqrt(candidate.front_sigma * candidate.front_sigma + by_turn * by_turn)
+    return params.stand_out - params.confidence * sigma
 
 
 def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -> float:

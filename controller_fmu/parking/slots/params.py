@@ -19,9 +19,13 @@ class SlotParams(NamedTuple):
     room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
     room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15
-    distance_behind: Annotated[float, Signal("m", "distance to the end of a perpendicular slot", 0.05, 2.0, HOUSE)] = (
-        0.08
-    )
+    confidence: Annotated[
+        float,
+        Signal("1", "standard deviations of the slot by which a parked vehicle is within limits", 0.0, 6.0, HOUSE),
+    ] = 2.0
+    distance_behind: Annotated[
+        float, Signal("m", "to the end of a slot: the monitor's distance, two standard deviations", 0.05, 2.0, HOUSE)
+    ] = 0.08
     kerb_min: Annotated[float, Signal("m", "least distance to a kerb beside", 0.05, 1.0, GBT)] = 0.15
     kerb_max: Annotated[float, Signal("m", "largest distance to a kerb beside", 0.05, 1.0, GBT)] = 0.3
     kerb_shift: Annotated[

@@ -18,7 +18,7 @@ from controller_fmu.parking.map.landmark import (
 )
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from modelkit.maths import wrap_angle
+from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
 MEMBERS = 8
@@ -72,6 +72,15 @@ class SlotRow(NamedTuple):
     used: int = 0
     slope: float = 0.0
     """Of the road against the frame's x axis: the frame of an angled row is square to the direction into a slot."""
+    heading_sigma: float = 0.0
+    """Standard deviation [rad] of the frame's heading; 0: it is given."""
+
+
+class RowDirection(NamedTuple):
+    """How far a row is turned against its frame, and the standard deviation of that [rad]."""
+
+    turn: float
+    sigma: float
 
 
 def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:
@@ -85,8 +94,9 @@ def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params
 
 def _row_in_direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> SlotRow:
     """Return the row in its frame turned into the direction that the landmarks and its members show."""
-    turn = _direction(landmarks, row, params)
-    return _members(landmarks, row.frame._replace(heading=row.frame.heading + turn), row.side, params)
+    direction = _direction(landmarks, row, params)
+    frame = row.frame._replace(heading=row.frame.heading + direction.turn)
+    return _members(landmarks, frame, row.side, params)._replace(heading_sigma=direction.sigma)
 
 
 def side_as_member(landmark: Landmark, frame: Pose, side: float, params: MappingParams) -> RowMember:
@@ -176,20 +186,46 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
     )
 
 
-def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> float:
-    """Return how far [rad] the row is turned against its frame.
+def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> RowDirection:
+    """Return how far a row is turned against its frame: half way between the road and its cars' mean heading.
 
-    A line that contradicts the headings is none of the row: one of its cars has moved out of it.
+    The road follows from the headings of all sides, those of cars and what lies deeper, and from the line through the
+    row. A line that contradicts the headings is none of the row: one of its cars has moved out of it.
     """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
+    deepest = NO_MEMBER
+    for number in range(MEMBERS):
+        if number < row.used:
+            deepest = min(deepest, row.members[number].front + ROW_DEPTH)
     total = 0.0
     turn = 0.0
+    of_cars = 0.0
+    turn_of_cars = 0.0
     for number in range(LANDMARKS):
         landmark = landmarks[number]
-        if side_as_member(landmark, row.frame, row.side, params).end != 0.0:
+        member = side_as_member(landmark, row.frame, row.side, params)
+        if member.end > member.start:
             weight = 1.0 / (landmark.hh + ASKEW_VARIANCE)
+            weighted = weight * wrap_angle(landmark.heading - along)
             total += weight
-            turn += weight * wrap_angle(landmark.heading - along)
+            turn += weighted
+            if member.front < deepest:
+                of_cars += weight
+                turn_of_cars += weighted
+    if of_cars <= 0.0:
+        return RowDirection(0.0, MAX_TILT)
+    by_cars = turn_of_cars / of_cars
+    line = _line_direction(row)
+    difference = line.turn - turn / total
+    if difference * difference < params.gate * (1.0 / total + line.sigma * line.sigma):
+        weight = 1.0 / (line.sigma * line.sigma)
+        turn += weight * line.turn
+        total += weight
+    return RowDirection(0.5 * (turn / total + by_cars), 0.5 / math.sqrt(total))
+
+
+def _line_direction(row: SlotRow) -> RowDirection:
+    """Return the direction of the line through the middles of a row's sides; of a single one it is not known."""
     n = 0.0
     sx = 0.0
     sy = 0.0
@@ -205,13 +241,7 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
             sy += y
             sxx += x * x
             sxy += x * y
-    by_headings = turn / total if total > 0.0 else 0.0
     spread = sxx - sx * sx / n if n > 0.0 else 0.0
     if spread <= UNEVEN:
-        return by_headings
-    weight = spread / (UNEVEN * UNEVEN)
-    by_line = math.atan((sxy - sx * sy / n) / spread)
-    difference = by_line - by_headings
-    if total > 0.0 and difference * difference > params.gate * (1.0 / total + 1.0 / weight):
-        return by_headings
-    return (turn + weight * by_line) / (total + weight)
+        return RowDirection(0.0, PI)
+    return RowDirection(math.atan((sxy - sx * sy / n) / spread), UNEVEN / math.sqrt(spread))

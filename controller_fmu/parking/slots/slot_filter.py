@@ -298,7 +298,21 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         ahead=slot.ahead._replace(start=ahead, start_front=ahead_front, start_sigma=ahead_sigma),
         front=front,
         depth=depth,
+        front_sigma=_middle_sigma(covariance, heading + 0.5 * math.pi),
+        middle_sigma=_middle_sigma(covariance, heading),
     )
+
+
+def _middle_sigma(covariance: tuple[float, ...], direction: float) -> float:
+    """Return the standard deviation [m] of the middle between both corners in a ``direction`` [rad]."""
+    axis = (math.cos(direction), math.sin(direction))
+    total = 0.0
+    for row in range(4):
+        for column in range(4):
+            at = AHEAD_OFFSET * (row // 2) + row % 2
+            other = AHEAD_OFFSET * (column // 2) + column % 2
+            total += axis[row % 2] * axis[column % 2] * covariance[at * STATE_COUNT + other]
+    return 0.5 * math.sqrt(max(total, 0.0))
 
 
 def _sigma_along(covariance: tuple[float, ...], at: int, heading: float) -> float:

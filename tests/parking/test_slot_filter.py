@@ -86,6 +86,16 @@ def test_what_the_slot_is_unsure_follows_from_both_corners() -> None:
         assert found == pytest.approx(math.sqrt(mean @ matrix(drifted) @ mean))
 
 
+def test_a_heading_that_was_unknown_does_not_turn_the_row() -> None:
+    """Of a neighbour only 0.3 m had been seen: once its flank was, the row turned by half of what that showed."""
+    slot = slot_at()
+    slot = slot._replace(ahead=slot.ahead._replace(end=WIDTH + 0.3))
+    begun = begin_slot_filter(slot)
+    shown = begun._replace(state=(*begun.state[:5], math.radians(8.0), begun.state[6]))
+    turn = slot_of_filter(slot, shown, OUTLINE).row.frame.heading
+    assert 0.0 < math.degrees(turn) < 0.5
+
+
 def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     slot = slot_at(0.1, -0.05, 0.02)
     before = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)

@@ -270,9 +270,7 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         return slot
     state = slot_filter.state
     heading = slot.row.frame.heading
-    behind_turn = wrap_angle(state[2] - _front_heading(slot.row, slot.behind, slot.behind.end_length))
-    ahead_turn = wrap_angle(state[AHEAD_OFFSET + 2] - _front_heading(slot.row, slot.ahead, slot.ahead.start_length))
-    turn = 0.5 * (behind_turn + ahead_turn)
+    turn = _row_turn(slot, state)
     middle = Point(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]))
     before = point_to_frame(middle.x, middle.y, slot.row.frame)
     rotated = Pose(middle.x, middle.y, heading + turn)
@@ -301,6 +299,20 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         front_sigma=_middle_sigma(covariance, heading + 0.5 * math.pi),
         middle_sigma=_middle_sigma(covariance, heading),
     )
+
+
+def _row_turn(slot: SlotCandidate, state: tuple[float, ...]) -> float:
+    """Return the mean angle [rad] by which a slot's neighbours are turned now, by how well each was known at first.
+
+    What a short side is found to be turned by was unknown before, rather than the odometry's drift.
+    """
+    a = slot.behind
+    b = slot.ahead
+    behind = wrap_angle(state[2] - _front_heading(slot.row, a, a.end_length))
+    ahead = wrap_angle(state[AHEAD_OFFSET + 2] - _front_heading(slot.row, b, b.start_length))
+    behind_weight = 1.0 / _heading_variance(a, a.end_length)
+    ahead_weight = 1.0 / _heading_variance(b, b.start_length)
+    return (behind_weight * behind + ahead_weight * ahead) / (behind_weight + ahead_weight)
 
 
 def _middle_sigma(covariance: tuple[float, ...], direction: float) -> float:

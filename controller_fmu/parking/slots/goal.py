@@ -23,7 +23,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         if left < params.kerb_min:
             shift = left - params.kerb_min
         elif left > params.kerb_max and left < params.kerb_max + params.stand_out:
-            shift = min(left - params.kerb_max, params.kerb_shift)
+            shift = min(left - params.kerb_max, max(most_overhang(candidate, outline, params), 0.0))
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:
@@ -44,7 +44,7 @@ def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
 
 
 def most_overhang(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
-    """Return how far [m] a vehicle may be found to stand out: GB/T's limit less what front and direction are unsure.
+    """Return how far [m] a vehicle may be found out of the line: GB/T's limit less what front and direction are unsure.
 
     Turned by the direction's error a corner stands out by half of the vehicle's side along the row times that.
     """

@@ -80,7 +80,7 @@ SYSTEMS: Mapping[int, StudiedSystem] = {
             "search.open_ended": "slot.open_ended",
             "search.wish": "slot.wanted",
         },
-        same_rules={"slot.kerb_shift": 0.5, "slot.stand_out": 0.5},
+        same_rules={"slot.stand_out": 0.5},
         shown=Instants("controller.parking.state", (int(ParkingState.CONFIRMING),)),
         shown_slot={
             "a.x": "controller.parking.slot.ax",

@@ -20,6 +20,7 @@ from controller_fmu.parking.slots.candidate import (
     bay_width,
     find_slot,
     log_likelihood_ratio,
+    row_point,
 )
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
@@ -145,9 +146,22 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
     row = SlotRow(Pose(), -1.0, used=2)
     ahead = RowMember(3.0, 3.4, 1.0, True, True, 1.0, 1.0, 0.05, 0.05, 0.4, 0.4)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=ahead, front=1.0)
-    flank = side(3.0 + beyond, -3.5, 90.0, 3.0)
+    flank = side(3.0 + beyond, -3.5, 90.0, 3.0 if beyond > 0.0 else 0.3)
     corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
     assert corrected.ahead.start == pytest.approx(edge)
+
+
+def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
+    """Between the car passed first and the bay stands a pillar, of which only a corner was measured."""
+    cars = [side(-1.8, -1.5, 0.0, 1.8), side(4.2, -1.5, 0.0, 1.8)]
+    pillar = Landmark(LandmarkType.POINT, 0.0, -1.7, confirmations=20)
+    behind = pillar._replace(y=-4.5)
+    for posts, end in (([], -0.9), ([pillar], 0.0), ([behind], -0.9)):
+        landmarks = (*cars, *posts, *(Landmark(),) * (LANDMARKS - 2 - len(posts)))
+        row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+        slot = find_slot(row, landmarks, LandmarkMap().free_space.right, OUTLINE, SlotParams(), MappingParams())
+        edge = row_point(slot.row, slot.behind.end, slot.front)
+        assert edge.x == pytest.approx(end, abs=0.01)
 
 
 def side(x: float, y: float, turn: float, length: float) -> Landmark:

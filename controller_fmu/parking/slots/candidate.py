@@ -18,7 +18,7 @@ from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkTyp
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MEMBERS, RowMember, SlotRow
+from controller_fmu.parking.slots.row import MEMBER_GAP, MEMBERS, ROW_DEPTH, RowMember, SlotRow
 from modelkit.geometry import Point
 
 UNKNOWN_DEPTH = 50.0
@@ -140,10 +140,13 @@ def _candidate(
     """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
     ahead = row.members[number]
     behind = row.members[min(number + 1, MEMBERS - 1)]
+    found = _between_posts(SlotCandidate(row=row, behind=behind, ahead=ahead), landmarks, params)
+    behind = found.behind
+    ahead = found.ahead
     width = ahead.start - behind.end
     if width < 2.0 * outline.half_width:
         return SlotCandidate()
-    found = SlotCandidate(row=row, behind=behind, ahead=ahead, front=0.5 * (behind.end_front + ahead.start_front))
+    found = found._replace(front=0.5 * (behind.end_front + ahead.start_front))
     found = found._replace(depth=gap_depth(found, landmarks, outline, params), bay=bay_width(row))
     least_length = 2.0 * outline.half_length + slot.room_along
     least_width = 2.0 * outline.half_width + slot.room_across
@@ -166,6 +169,27 @@ def _candidate(
     is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
     missing = max((least_length if parallel else least_width) - width, 0.0)
     return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in, missing=missing)
+
+
+def _between_posts(found: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
+    """Return a gap as posts in the row, too short to be sides, narrow it."""
+    row = found.row
+    behind = found.behind
+    ahead = found.ahead
+    for post in range(LANDMARKS):
+        at = point_to_frame(landmarks[post].x, landmarks[post].y, row.frame)
+        deep = row.side * at.y
+        is_post = landmarks[post].type == LandmarkType.POINT and is_confirmed(landmarks[post], params)
+        if is_post and behind.end + MEMBER_GAP < at.x < 0.5 * (behind.end + ahead.start) and _is_in_row(deep, behind):
+            behind = behind._replace(end=at.x, end_front=deep, end_length=INSET)
+        if is_post and 0.5 * (behind.end + ahead.start) < at.x < ahead.start - MEMBER_GAP and _is_in_row(deep, ahead):
+            ahead = ahead._replace(start=at.x, start_front=deep, start_length=INSET)
+    return found._replace(behind=behind, ahead=ahead)
+
+
+def _is_in_row(deep: float, member: RowMember) -> bool:
+    """Return whether a post ``deep`` [m] across a row stands where cars do."""
+    return abs(deep - member.front) < ROW_DEPTH
 
 
 def _as_driveway(

@@ -15,7 +15,7 @@ CORRECTION_GATE_SIGMA = 3.0
 """A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, and 0.2 m
 where it claims to be known better: corners err by 7 cm rms after entering."""
 MIN_FLANK = 0.5
-"""A shorter side [m] in the slot is no flank."""
+"""A shorter side [m] is no flank of a car; in the gap it may be a pillar's."""
 MIN_FACE = 0.2
 """And this [m] of a neighbour's end: the distance of two sensors."""
 MAX_FACE_ANGLE = 0.35
@@ -73,10 +73,12 @@ def correct_slot(
             is_side = landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params)
             angle = wrap_angle(landmark.heading - across)
             off = min(abs(angle), math.pi - abs(angle))
-            if is_side and length_of(landmark) > MIN_FLANK and off < MAX_ANGLE:
+            length = length_of(landmark)
+            if is_side and length > MIN_FACE and off < MAX_ANGLE:
                 middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
                 point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-                if candidate.row.side * point.y > candidate.front:
+                is_within = candidate.behind.end < point.x < candidate.ahead.start
+                if candidate.row.side * point.y > candidate.front and (length > MIN_FLANK or is_within):
                     corrected = _with_edge(corrected, candidate, point.x)
     if candidate.type == SlotType.PARALLEL:
         corrected = _between_faces(candidate, landmarks, params)

@@ -266,3 +266,12 @@ def test_beside_one_car_there_is_a_slot_where_the_driver_takes_one(open_ended: b
     if open_ended:
         goal = goal_pose(slot, OUTLINE, wanted)
         assert goal.x == pytest.approx(-0.4 + wanted.room_across + OUTLINE.half_width, abs=0.2)
+
+
+@pytest.mark.parametrize(("width", "middles"), [(2.9, (1.45,)), (4.2, (2.1,)), (5.7, (1.6, 4.1))])
+def test_where_no_repetition_shows_bays_of_the_usual_width_count(width: float, middles: tuple[float, ...]) -> None:
+    row = SlotRow(Pose(), -1.0)
+    behind, ahead = RowMember(-1.8, 0.0, 0.0, True, True), RowMember(width, width + 1.8, 0.0, True, True)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead)
+    assert bay_width(row) == 0.0
+    assert min(abs(goal_pose(slot, OUTLINE, SlotParams()).x - middle) for middle in middles) < 0.1

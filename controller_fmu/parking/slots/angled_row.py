@@ -14,6 +14,8 @@ from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkTyp
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import (
+    BAY_SIGMA,
+    BAY_WIDTH,
     CAR_LENGTH,
     CAR_LENGTH_SIGMA,
     CAR_WIDTH,
@@ -36,10 +38,6 @@ from controller_fmu.parking.slots.row import (
 from modelkit.geometry import Point
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
-
-BAY_WIDTH = 2.5
-BAY_SIGMA = 0.3
-"""Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
 
 
 class ObliqueSides(NamedTuple):

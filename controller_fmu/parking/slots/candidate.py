@@ -44,6 +44,9 @@ MAX_CAR = 6.0
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 MAX_BAY = 3.5
+BAY_WIDTH = 2.5
+BAY_SIGMA = 0.3
+"""Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
 INSET = 0.25
 """What stands at least this far [m] from both neighbours and behind their fronts is in the gap."""
 SAMPLES = 9

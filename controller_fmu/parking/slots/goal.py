@@ -4,7 +4,14 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, into_heading, row_point
+from controller_fmu.parking.slots.candidate import (
+    BAY_WIDTH,
+    CAR_WIDTH,
+    SlotCandidate,
+    SlotType,
+    into_heading,
+    row_point,
+)
 from controller_fmu.parking.slots.params import SlotParams
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
@@ -66,9 +73,11 @@ def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -
 def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
-    A gap of n bays is at least n times the width of a bay, and once more the spare width beside a car in its bay.
+    A row that shows no repetition has bays of the usual width. A gap of n bays is at least n times the width of a bay,
+    and once more the spare width beside a car in its bay.
     """
+    bay = candidate.bay if candidate.bay > 0.0 else BAY_WIDTH
     width = candidate.ahead.start - candidate.behind.end
-    spare = max(candidate.bay - CAR_WIDTH, 0.0)
-    bays = max(1.0, float(math.floor((width - spare + OFF_CENTRE) / candidate.bay))) if candidate.bay > 0.0 else 1.0
+    spare = max(bay - CAR_WIDTH, 0.0)
+    bays = max(1.0, float(math.floor((width - spare + OFF_CENTRE) / bay)))
     return candidate.ahead.start - 0.5 * spare - 0.5 * (width - spare) / bays

@@ -23,7 +23,6 @@ NAMES = sorted(file.stem for kind in ("apa", "valet", "cicap") for file in SCENA
 OTHERWISE = frozenset(
     {
         "apa-slot-too-short",
-        "valet-external-slot",
     }
 )
 """Those that do not end as they are meant to: they need what the system does not have yet, or go wrong."""

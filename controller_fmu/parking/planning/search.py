@@ -187,11 +187,11 @@ def region_of(pose: Pose, problem: SearchProblem) -> int:
     return (((along * 256 + across) * 17 + turns) * 40503 // 16) % CROWDING_CELLS
 
 
-def cost_estimate(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
-    """Return what a path from ``pose`` to the target will cost [m] at the least, as far as can be said quickly."""
+def heuristic(work: PlanningWork, pose: Pose, cost: float, problem: SearchProblem) -> float:
+    """Return what a distance through ``pose`` will cost at the least, as far as can be said quickly."""
     cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
     turn = abs(wrap_angle(problem.target.heading - pose.heading)) / problem.car.max_curvature
-    return cost_to_go if cost_to_go > turn else turn
+    return cost + problem.stage.resolution.heuristic_weight * (cost_to_go if cost_to_go > turn else turn)
 
 
 def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProblem) -> None:
@@ -256,10 +256,8 @@ def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) 
         if work.node_key[other] == key:
             set_state(work, other, CLOSED)
         other = work.node_slot[other]
-    rest = cost_estimate(work, successor.pose, problem)
-    if successor.cost + rest < bound_cost(work):
-        node = add_node(work, successor, key, slot)
-        push_bucket(work, node, bucket_of(successor.cost + problem.stage.resolution.heuristic_weight * rest))
+    node = add_node(work, successor, key, slot)
+    push_bucket(work, node, bucket_of(heuristic(work, successor.pose, successor.cost, problem)))
 
 
 def key_of(pose: Pose, distance: float, problem: SearchProblem) -> int:

@@ -19,13 +19,14 @@ from controller_fmu.parking.slots.candidate import (
     SlotType,
     bay_width,
     find_slot,
+    is_too_short_for_car,
     log_likelihood_ratio,
     row_point,
 )
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row
+from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row, side_as_member
 from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
@@ -149,6 +150,15 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
     flank = side(3.0 + beyond, -3.5, 90.0, 3.0 if beyond > 0.0 else 0.3)
     corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
     assert corrected.ahead.start == pytest.approx(edge)
+
+
+def test_a_car_that_is_still_being_passed_is_no_pillar() -> None:
+    begun = side(0.0, -1.5, 0.0, 0.8)
+    passed = side_as_member(begun, Pose(), -1.0, MappingParams())
+    assert passed.start_length == passed.end_length == pytest.approx(0.8)
+    member = side_as_member(begun._replace(end_known=False), Pose(), -1.0, MappingParams())
+    assert member.start_length == member.end_length == 0.0
+    assert not is_too_short_for_car(member.start_length)
 
 
 def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:

@@ -55,7 +55,7 @@ class RowMember(NamedTuple):
     end_sigma: float = 0.0
     start_length: float = 0.0
     """Length [m] of the side that begins at its start, and of the one that ends at its end, as sides are joined; 0:
-    unknown."""
+    not seen in full."""
     end_length: float = 0.0
 
 
@@ -116,6 +116,7 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
     first = p if p.x < q.x else q
     last = q if p.x < q.x else p
     forward = p.x < q.x
+    length = last.x - first.x if landmark.start_known and landmark.end_known else 0.0
     return RowMember(
         first.x,
         last.x,
@@ -126,8 +127,8 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
         side * last.y,
         math.sqrt(landmark.start_variance if forward else landmark.end_variance),
         math.sqrt(landmark.end_variance if forward else landmark.start_variance),
-        last.x - first.x,
-        last.x - first.x,
+        length,
+        length,
     )
 
 

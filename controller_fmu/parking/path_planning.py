@@ -52,8 +52,6 @@ from modelkit.car import largest_curvature
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
-FRONT_SENSORS = (1, 2)
-
 
 def begin_plan(memory: ParkingMemory) -> ParkingMemory:
     """Return the memory with a new plan due; the first sample at standstill makes its request."""

@@ -124,7 +124,7 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     drives = state == ParkingState.DRIVING
     steers = state != ParkingState.PLANNING
     blocked = memory.verdict.is_blocked
-    expectation = ExpectedMotion(steers, moves, drives, blocked, memory.steering_wheel_angle, params.monitor.over_speed)
+    expectation = ExpectedMotion(steers, moves, blocked, memory.steering_wheel_angle, params.monitor.over_speed)
     limit = params.limit
     if memory.strategy != Strategy.SLOT:
         limit = limit._replace(manoeuvres=max_manoeuvres(memory, params))

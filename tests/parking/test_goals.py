@@ -17,7 +17,7 @@ from controller_fmu.parking.obstacle_map import is_on_map
 from controller_fmu.parking.perception import chosen_number, with_offer
 from controller_fmu.parking.planning.planner import begin, is_for_request
 from controller_fmu.parking.planning.problem import PlanningRequest
-from controller_fmu.parking.planning.work import VERTEX_COUNT, PlanningWork
+from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.external import external_candidate, external_pose, has_passed_external
 from controller_fmu.parking.slots.goal import goal_pose
@@ -143,7 +143,7 @@ def test_the_polygons_of_a_map_stand_behind_those_of_the_landmarks() -> None:
     assert [v[:2] for v in whole[LOCAL_VERTICES : LOCAL_VERTICES + 5]] == [*corners, (0.0, 0.0)]
     assert len({v[2] for v in whole if v[2]}) == 2
     begin(work, own, known, request._replace(has_map=False))
-    assert work.counts[VERTEX_COUNT] == LOCAL_VERTICES
+    assert work.counts[PlanCount.VERTEX_COUNT] == LOCAL_VERTICES
     sides = {y: is_on_map(wall(2.0, y, 3.0)[0], known, 0.2) for y in (0.1, 1.0, 1.9, 2.3)}
     assert sides == {0.1: True, 1.0: False, 1.9: True, 2.3: False}
     assert not is_on_map(wall(4.0, 0.0, 3.0)[0], known, 0.2), "half of it goes on beyond the polygon"

@@ -9,7 +9,7 @@ from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.planning.planner import search_until
 from controller_fmu.parking.planning.problem import PlanningRequest
-from controller_fmu.parking.planning.work import EDGE_COUNT, PlanningWork
+from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 
@@ -48,7 +48,7 @@ def edges_of(*polygons: list[tuple[float, float]]) -> int:
     work = new_store(PlanningWork)
     request = PlanningRequest(Pose(), Pose(5.0, 0.0, 0.0), CAR, 0.1, 10)
     search_until(work, ObstacleMap((*corners, *rest)), (), request, 1)
-    return work.counts[EDGE_COUNT]
+    return work.counts[PlanCount.EDGE_COUNT]
 
 
 def test_an_edge_is_laid_out_once() -> None:

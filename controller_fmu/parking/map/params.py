@@ -11,7 +11,6 @@ class MappingParams(NamedTuple):
     """What the estimator assumes about sensors and odometry."""
 
     range_noise: Annotated[float, Signal("m", "standard deviation of an echo", 1e-4, 1.0, HOUSE)] = 0.01
-    dropout: Annotated[float, Signal("1", "probability that an echo is lost", 0.0, 0.9, HOUSE)] = 0.02
     distance_variance: Annotated[
         float, Signal("m", "odometry error along the path, variance per metre: 0.4 % over 10 m", 0.0, 1.0, HOUSE)
     ] = 1.6e-4

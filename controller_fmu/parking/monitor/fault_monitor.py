@@ -47,7 +47,6 @@ class ExpectedMotion(NamedTuple):
     """It holds the steering wheel."""
     moves: bool
     """It turns the wheel or drives; else the vehicle is to come to a stop."""
-    drives: bool
     is_blocked: bool
     """The monitor keeps it standing."""
     steering_wheel_angle: float

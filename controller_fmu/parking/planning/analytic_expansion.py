@@ -4,15 +4,7 @@ from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.search_tree import set_best
-from controller_fmu.parking.planning.work import (
-    BEST_COST,
-    BEST_NODE,
-    FREE_AT_NODE,
-    FREE_AT_TARGET,
-    NONE,
-    PlanningWork,
-    discard_word,
-)
+from controller_fmu.parking.planning.work import NONE, PlanCount, PlanningWork, PlanValue, discard_word
 from modelkit.vocabulary import Pose
 
 MAX_LENGTH = 10.0
@@ -26,7 +18,9 @@ def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int
     while tries < MAX_TRIES:
         word = cheapest_word(work, words)
         cost = work.node_cost[node] + work.word_cost[word]
-        if work.word_cost[word] > 1e8 or (work.counts[BEST_NODE] != NONE and cost >= work.values[BEST_COST]):
+        if work.word_cost[word] > 1e8 or (
+            work.counts[PlanCount.BEST_NODE] != NONE and cost >= work.values[PlanValue.BEST_COST]
+        ):
             return
         if _ends_free(work, word):
             tries += 1
@@ -71,13 +65,13 @@ def _ends_free(work: PlanningWork, word: int) -> bool:
         rest = rest // 3
         if distance != 0.0:
             if first:
-                free = work.values[FREE_AT_NODE + (5 if distance > 0.0 else 0) + 2 * turn]
+                free = work.values[PlanValue.FREE_AT_NODE + (5 if distance > 0.0 else 0) + 2 * turn]
                 if abs(distance) > free and free < MAX_LENGTH:
                     return False
             first = False
             last = distance
             last_turn = turn
-    return abs(last) <= work.values[FREE_AT_TARGET + (0 if last > 0.0 else 3) + last_turn]
+    return abs(last) <= work.values[PlanValue.FREE_AT_TARGET + (0 if last > 0.0 else 3) + last_turn]
 
 
 def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:

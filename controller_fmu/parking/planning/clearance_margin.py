@@ -16,14 +16,7 @@ from controller_fmu.parking.planning.curvature_transition import (
     transition_state,
 )
 from controller_fmu.parking.planning.problem import PlanningRequest, SearchProblem
-from controller_fmu.parking.planning.work import (
-    BEST_PATH_MARGIN,
-    BEST_SEGMENT_COUNT,
-    MEASURED_SEGMENTS,
-    PlanningWork,
-    set_clearance,
-    set_count,
-)
+from controller_fmu.parking.planning.work import PlanCount, PlanningWork, PlanValue
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
@@ -53,19 +46,19 @@ EXAMINED_AFTER = 2.0
 
 def measure_clearance(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> bool:
     """Measure the room about the begin of the next segment of the path kept; returns whether there is one more."""
-    segment = work.counts[MEASURED_SEGMENTS]
-    problem = problem._replace(margin=work.values[BEST_PATH_MARGIN])
+    segment = work.counts[PlanCount.MEASURED_SEGMENTS]
+    problem = problem._replace(margin=work.values[PlanValue.BEST_PATH_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     if work.best_speed[segment] > 0.0 or (segment > 0 and work.best_speed[segment - 1] > 0.0):
-        set_clearance(work, segment, 0.0)
+        work.best_clearance[segment] = 0.0
     elif segment == 0:
-        set_clearance(work, segment, _clearance_about(work, start, segment, problem))
+        work.best_clearance[segment] = _clearance_about(work, start, segment, problem)
     elif work.best_length[segment - 1] * work.best_length[segment] < 0.0:
-        set_clearance(work, segment, _overrun(work, start, segment, problem))
+        work.best_clearance[segment] = _overrun(work, start, segment, problem)
     else:
         _set_transition(work, start, segment, problem)
-    set_count(work, MEASURED_SEGMENTS, segment + 1)
-    return segment + 1 < work.counts[BEST_SEGMENT_COUNT]
+    work.counts[PlanCount.MEASURED_SEGMENTS] = segment + 1
+    return segment + 1 < work.counts[PlanCount.BEST_SEGMENT_COUNT]
 
 
 def _clearance_about(work: PlanningWork, start: Pose, segment: int, problem: SearchProblem) -> float:
@@ -76,7 +69,7 @@ def _clearance_about(work: PlanningWork, start: Pose, segment: int, problem: Sea
     least = clearance(work, start, problem) if segment == 0 else MAX_CLEARANCE
     pose = start
     at = 0.0
-    for number in range(work.counts[BEST_SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.BEST_SEGMENT_COUNT]):
         distance = work.best_length[number]
         place = max(0.0, joint - EXAMINED_DISTANCE - at)
         last = min(abs(distance), joint + EXAMINED_DISTANCE - at)
@@ -107,13 +100,13 @@ def _set_transition(work: PlanningWork, start: Pose, segment: int, problem: Sear
         + CLEARANCE_FRACTION * _clearance_about(work, start, segment, problem),
     )
     if abs(work.best_curvature[segment] - work.best_curvature[segment - 1]) < SAME_CURVATURE:
-        set_clearance(work, segment, most)
+        work.best_clearance[segment] = most
         return
     for number in range(len(OFFSET_FRACTIONS)):
-        set_clearance(work, segment, OFFSET_FRACTIONS[number] * most)
+        work.best_clearance[segment] = OFFSET_FRACTIONS[number] * most
         if _is_transition_free(work, joint, segment, problem):
             return
-    set_clearance(work, segment, 0.0)
+    work.best_clearance[segment] = 0.0
 
 
 def _is_transition_free(work: PlanningWork, joint: Pose, segment: int, problem: SearchProblem) -> bool:
@@ -168,7 +161,10 @@ def _gear_distance(work: PlanningWork, segment: int, turn: int) -> float:
     """Return the distance [m] in a gear from a segment's begin on (``turn`` 1) or before (-1), up to a transition."""
     distance = 0.0
     number = segment if turn > 0 else segment - 1
-    while 0 <= number < work.counts[BEST_SEGMENT_COUNT] and work.best_length[number] * work.best_length[segment] > 0.0:
+    while (
+        0 <= number < work.counts[PlanCount.BEST_SEGMENT_COUNT]
+        and work.best_length[number] * work.best_length[segment] > 0.0
+    ):
         if work.best_speed[number] > 0.0:
             return distance
         distance += abs(work.best_length[number])
@@ -190,7 +186,7 @@ def _along(work: PlanningWork, joint: Pose, segment: int, past: float) -> Pose:
     left = abs(past)
     number = segment if past > 0.0 else segment - 1
     turn = 1 if past > 0.0 else -1
-    while left > abs(work.best_length[number]) and 0 <= number + turn < work.counts[BEST_SEGMENT_COUNT]:
+    while left > abs(work.best_length[number]) and 0 <= number + turn < work.counts[PlanCount.BEST_SEGMENT_COUNT]:
         pose = pose_along_arc(pose, turn * work.best_length[number], work.best_curvature[number])
         left -= abs(work.best_length[number])
         number += turn

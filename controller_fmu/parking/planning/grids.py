@@ -6,19 +6,7 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
-from controller_fmu.parking.planning.work import (
-    BUCKETS,
-    NONE,
-    VERTEX_COUNT,
-    PlanningWork,
-    clear_cost_to_go,
-    set_bucket,
-    set_cell_edge,
-    set_cell_start,
-    set_cost_to_go,
-    set_edge,
-    set_next_cell,
-)
+from controller_fmu.parking.planning.work import BUCKETS, NONE, PlanCount, PlanningWork, clear_cost_to_go, set_edge
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -74,13 +62,13 @@ def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: Vehic
     """List the edges near each cell; returns whether the list has room for all."""
     cells = region.edge_cell_count * region.edge_cell_count
     for cell in range(cells + 1):
-        set_cell_start(work, cell, 0)
+        work.cell_start[cell] = 0
     for edge in range(edges):
         _index_edge(work, edge, region, car, False)
     total = 0
     for cell in range(cells + 1):
         total += work.cell_start[cell]
-        set_cell_start(work, cell, total)
+        work.cell_start[cell] = total
     if total > len(work.cell_edge):
         return False
     for edge in range(edges):
@@ -124,10 +112,10 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
                 cell = row * region.edge_cell_count + column
                 place = work.cell_start[cell]
                 if fill:
-                    set_cell_start(work, cell, place - 1)
-                    set_cell_edge(work, place - 1, edge)
+                    work.cell_start[cell] = place - 1
+                    work.cell_edge[place - 1] = edge
                 else:
-                    set_cell_start(work, cell, place + 1)
+                    work.cell_start[cell] = place + 1
 
 
 def point_line(x: float, y: float, dx: float, dy: float) -> float:
@@ -173,7 +161,7 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
             ):
                 x = (column + 0.5) * region.cost_to_go_cell - x1
                 if point_line(x, y, dx, dy) < reach * reach:
-                    set_cost_to_go(work, row * count + column, -1.0)
+                    work.cost_to_go[row * count + column] = -1.0
 
 
 def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
@@ -181,18 +169,18 @@ def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
     region = problem.region
     count = region.cost_to_go_count
     for number in range(BUCKETS):
-        set_bucket(work, number, NONE)
+        work.bucket[number] = NONE
     row = _cell(problem.target.y - region.y0, region.cost_to_go_cell, count)
     column = _cell(problem.target.x - region.x0, region.cost_to_go_cell, count)
     start = row * count + column
-    set_cost_to_go(work, start, 0.0)
-    set_next_cell(work, start, NONE)
-    set_bucket(work, 0, start)
+    work.cost_to_go[start] = 0.0
+    work.cost_to_go_next[start] = NONE
+    work.bucket[0] = start
     for number in range(BUCKETS):
         while work.bucket[number] != NONE:
             cell = work.bucket[number]
-            set_bucket(work, number, work.cost_to_go_next[cell])
-            set_next_cell(work, cell, NOT_QUEUED)
+            work.bucket[number] = work.cost_to_go_next[cell]
+            work.cost_to_go_next[cell] = NOT_QUEUED
             _relax(work, cell, region)
 
 
@@ -209,12 +197,12 @@ def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
             before = work.cost_to_go[other]
             distance = here + region.cost_to_go_cell * (1.0 if side % 2 == 1 else 1.41421356)
             if before >= 0.0 and distance < before - 1e-3:
-                set_cost_to_go(work, other, distance)
+                work.cost_to_go[other] = distance
                 if work.cost_to_go_next[other] == NOT_QUEUED:
                     number = math.floor(distance / region.cost_to_go_cell)
                     number = number if number < BUCKETS else BUCKETS - 1
-                    set_next_cell(work, other, work.bucket[number])
-                    set_bucket(work, number, other)
+                    work.cost_to_go_next[other] = work.bucket[number]
+                    work.bucket[number] = other
 
 
 def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchRegion) -> float:
@@ -228,7 +216,7 @@ def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchR
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
     """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the search region."""
     count = 0
-    for vertex in range(work.counts[VERTEX_COUNT]):
+    for vertex in range(work.counts[PlanCount.VERTEX_COUNT]):
         if work.corner_of[vertex] > 0:
             after = next_corner(work, vertex)
             if not is_repeated(work, vertex, after):
@@ -259,7 +247,7 @@ def _seen_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:
 def next_corner(work: PlanningWork, vertex: int) -> int:
     """Return the vertex that an edge leads to from ``vertex``: the next one, or the first of the polygon."""
     polygon = work.corner_of[vertex]
-    if vertex + 1 < work.counts[VERTEX_COUNT] and work.corner_of[vertex + 1] == polygon:
+    if vertex + 1 < work.counts[PlanCount.VERTEX_COUNT] and work.corner_of[vertex + 1] == polygon:
         return vertex + 1
     first = vertex
     while first > 0 and work.corner_of[first - 1] == polygon:
@@ -270,7 +258,7 @@ def next_corner(work: PlanningWork, vertex: int) -> int:
 def is_inside(work: PlanningWork, pose: Pose) -> bool:
     """Return whether the rear axle's midpoint lies inside a polygon: a ray meets an odd count of its edges."""
     odd = False
-    for vertex in range(work.counts[VERTEX_COUNT]):
+    for vertex in range(work.counts[PlanCount.VERTEX_COUNT]):
         if work.corner_of[vertex] > 0:
             after = next_corner(work, vertex)
             ay = work.corner_y[vertex] - pose.y

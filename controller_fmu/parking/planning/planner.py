@@ -31,28 +31,13 @@ from controller_fmu.parking.planning.search_schedule import (
 from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, path_cost, smooth
 from controller_fmu.parking.planning.steering_transitions import begin_transitions, try_transitions
 from controller_fmu.parking.planning.work import (
-    BEST_PATH_COST,
-    BEST_PATH_MARGIN,
-    BEST_SEGMENT_COUNT,
-    BEST_STAGE,
-    COUNT,
-    EDGE_COUNT,
-    GOAL_TIGHTER,
     MAX_CUSPS,
-    MEASURED_SEGMENTS,
-    MIN_END_CLEARANCE,
-    PHASE,
     REQUEST_SIZE,
-    SEGMENT_COUNT,
-    STAGE,
-    STATUS,
-    VERTEX_COUNT,
+    PlanCount,
     PlanningWork,
+    PlanValue,
     set_best_segment,
-    set_count,
-    set_requested,
     set_segment,
-    set_value,
     set_vertex,
 )
 
@@ -112,28 +97,28 @@ def search_until(
     work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest, count: int
 ) -> None:
     """Bring the search for a path among ``local`` and, if requested, ``known`` polygons to ``count`` steps."""
-    if work.counts[COUNT] > count or not is_for_request(work, local, known, request):
+    if work.counts[PlanCount.COUNT] > count or not is_for_request(work, local, known, request):
         begin(work, local, known, request)
-    for _ in range(work.counts[COUNT], count):
+    for _ in range(work.counts[PlanCount.COUNT], count):
         step(work, request)
 
 
 def continue_search(work: PlanningWork, request: PlanningRequest, most: int) -> int:
     """Bring the search on by at most ``most`` steps, fewer where one is long; returns their count so far."""
     for number in range(most):
-        phase = work.counts[PHASE]
+        phase = work.counts[PlanCount.PHASE]
         is_long = phase < PlanningPhase.SEARCH
         if phase == PlanningPhase.FINISHED or (is_long and number > 0):
-            return work.counts[COUNT]
+            return work.counts[PlanCount.COUNT]
         step(work, request)
         if is_long:
-            return work.counts[COUNT]
-    return work.counts[COUNT]
+            return work.counts[PlanCount.COUNT]
+    return work.counts[PlanCount.COUNT]
 
 
 def search_status(work: PlanningWork) -> int:
     """Return what has become of the search."""
-    return work.counts[STATUS]
+    return work.counts[PlanCount.STATUS]
 
 
 def is_for_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> bool:
@@ -143,7 +128,7 @@ def is_for_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, 
         if work.requested[which] != numbers[which]:
             return False
     count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
-    if work.counts[VERTEX_COUNT] != count:
+    if work.counts[PlanCount.VERTEX_COUNT] != count:
         return False
     for number in range(count):
         vertex = _vertex(local, known, number)
@@ -158,17 +143,17 @@ def begin(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], req
     """Forget all, and store the request."""
     numbers = _numbers(request)
     for which in range(REQUEST_SIZE):
-        set_requested(work, which, numbers[which])
+        work.requested[which] = numbers[which]
     count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
-    set_count(work, VERTEX_COUNT, count)
+    work.counts[PlanCount.VERTEX_COUNT] = count
     for number in range(count):
         vertex = _vertex(local, known, number)
         set_vertex(work, number, vertex.x, vertex.y, vertex.polygon)
-    set_count(work, COUNT, 0)
-    set_count(work, PHASE, PlanningPhase.LAY_OUT)
-    set_count(work, STAGE, 0)
-    set_count(work, STATUS, PlanningStatus.PLANNING)
-    set_count(work, BEST_SEGMENT_COUNT, 0)
+    work.counts[PlanCount.COUNT] = 0
+    work.counts[PlanCount.PHASE] = PlanningPhase.LAY_OUT
+    work.counts[PlanCount.STAGE] = 0
+    work.counts[PlanCount.STATUS] = PlanningStatus.PLANNING
+    work.counts[PlanCount.BEST_SEGMENT_COUNT] = 0
 
 
 def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Vertex:
@@ -181,8 +166,8 @@ def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Verte
 
 def step(work: PlanningWork, request: PlanningRequest) -> None:
     """Do one bounded segment of work: lay out a scene, plant a tree, expand a node, try a shorter span, see a joint."""
-    set_count(work, COUNT, work.counts[COUNT] + 1)
-    phase = work.counts[PHASE]
+    work.counts[PlanCount.COUNT] = work.counts[PlanCount.COUNT] + 1
+    phase = work.counts[PlanCount.PHASE]
     problem = search_problem(work, request)
     if phase == PlanningPhase.LAY_OUT:
         _lay_out(work, request)
@@ -192,7 +177,7 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
         status = expand_next(work, problem)
         if status == FOUND:
             begin_smoothing(work, problem)
-            set_count(work, PHASE, PlanningPhase.SMOOTH)
+            work.counts[PlanCount.PHASE] = PlanningPhase.SMOOTH
         elif status != SEARCHING:
             _next_stage(work, request)
     elif phase == PlanningPhase.SMOOTH:
@@ -203,8 +188,8 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     elif phase == PlanningPhase.ADD_TRANSITIONS:
         more = try_transitions(work, request, problem, MAX_SEGMENTS)
         if not more:
-            set_count(work, MEASURED_SEGMENTS, 0)
-            set_count(work, PHASE, PlanningPhase.MEASURE_CLEARANCE)
+            work.counts[PlanCount.MEASURED_SEGMENTS] = 0
+            work.counts[PlanCount.PHASE] = PlanningPhase.MEASURE_CLEARANCE
     elif phase == PlanningPhase.MEASURE_CLEARANCE:
         more = measure_clearance(work, request, problem)
         if not more:
@@ -214,11 +199,14 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
 def planned_path(work: PlanningWork) -> PlannedPath:
     """Return the path that was found."""
     segments = tuple(
-        _segment(work, number) if number < work.counts[BEST_SEGMENT_COUNT] else PathSegment()
+        _segment(work, number) if number < work.counts[PlanCount.BEST_SEGMENT_COUNT] else PathSegment()
         for number in range(MAX_SEGMENTS)
     )
     return PlannedPath(
-        work.counts[BEST_SEGMENT_COUNT], work.values[BEST_PATH_MARGIN], work.values[BEST_PATH_COST], segments
+        work.counts[PlanCount.BEST_SEGMENT_COUNT],
+        work.values[PlanValue.BEST_PATH_MARGIN],
+        work.values[PlanValue.BEST_PATH_COST],
+        segments,
     )
 
 
@@ -257,15 +245,15 @@ def _numbers(request: PlanningRequest) -> tuple[float, ...]:
 
 
 def _finish(work: PlanningWork, status: int) -> None:
-    set_count(work, PHASE, PlanningPhase.FINISHED)
-    set_count(work, STATUS, status)
+    work.counts[PlanCount.PHASE] = PlanningPhase.FINISHED
+    work.counts[PlanCount.STATUS] = status
 
 
 def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     """Take over the scene's edges, list them by cell, and see whether the car can stand at start and goal."""
     region = search_region(request)
     edges = add_edges(work, request.goal, region)
-    set_count(work, EDGE_COUNT, edges)
+    work.counts[PlanCount.EDGE_COUNT] = edges
     if edges > len(work.edge_x1):
         _finish(work, PlanningStatus.TOO_MANY_EDGES)
         return
@@ -278,38 +266,38 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     goal = problem.root if problem.from_goal else problem.target
     at_start = 0.0 if is_inside(work, request.start) else clearance(work, start, problem)
     at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, goal, problem)
-    set_value(work, MIN_END_CLEARANCE, at_start if at_start < at_goal else at_goal)
-    set_count(work, GOAL_TIGHTER, 0 if at_start < at_goal else 1)
+    work.values[PlanValue.MIN_END_CLEARANCE] = at_start if at_start < at_goal else at_goal
+    work.counts[PlanCount.GOAL_TIGHTER] = 0 if at_start < at_goal else 1
     if at_start <= 0.0:
         _finish(work, PlanningStatus.START_BLOCKED)
     elif at_goal <= 0.0:
         _finish(work, PlanningStatus.GOAL_BLOCKED)
-    elif work.values[MIN_END_CLEARANCE] < MIN_MARGIN + CLEARANCE_RESERVE:
+    elif work.values[PlanValue.MIN_END_CLEARANCE] < MIN_MARGIN + CLEARANCE_RESERVE:
         _finish(work, PlanningStatus.MARGIN_TOO_SMALL)
     else:
-        set_count(work, PHASE, PlanningPhase.BEGIN)
+        work.counts[PlanCount.PHASE] = PlanningPhase.BEGIN
 
 
 def _begin_stage(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> None:
     """Begin the search of the stage in hand, unless not even a point could get through."""
-    mark_blocked_cells(work, work.counts[EDGE_COUNT], problem)
+    mark_blocked_cells(work, work.counts[PlanCount.EDGE_COUNT], problem)
     compute_cost_to_go(work, problem)
     if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE:
         _next_stage(work, request)
         return
     begin_search(work, problem)
-    set_count(work, PHASE, PlanningPhase.SEARCH)
+    work.counts[PlanCount.PHASE] = PlanningPhase.SEARCH
 
 
 def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
     """Keep the path if it is the best yet; from a pose to itself it is one segment without a distance."""
-    if work.counts[SEGMENT_COUNT] == 0:
+    if work.counts[PlanCount.SEGMENT_COUNT] == 0:
         set_segment(work, 0, problem.root, 0.0, 0.0)
-        set_count(work, SEGMENT_COUNT, 1)
+        work.counts[PlanCount.SEGMENT_COUNT] = 1
     cost = path_cost(work, problem)
-    count = work.counts[SEGMENT_COUNT]
-    best = work.counts[BEST_SEGMENT_COUNT]
-    is_worse = best > 0 and work.values[BEST_PATH_COST] <= cost
+    count = work.counts[PlanCount.SEGMENT_COUNT]
+    best = work.counts[PlanCount.BEST_SEGMENT_COUNT]
+    is_worse = best > 0 and work.values[PlanValue.BEST_PATH_COST] <= cost
     if count > MAX_SEGMENTS or cusps_of(work) > work.requested[MAX_CUSPS] or is_worse:
         return
     for number in range(count):
@@ -318,16 +306,16 @@ def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
             set_best_segment(work, number, -work.segment_length[last], work.segment_curvature[last])
         else:
             set_best_segment(work, number, work.segment_length[number], work.segment_curvature[number])
-    set_count(work, BEST_SEGMENT_COUNT, count)
-    set_count(work, BEST_STAGE, work.counts[STAGE])
-    set_value(work, BEST_PATH_COST, cost)
-    set_value(work, BEST_PATH_MARGIN, problem.margin)
+    work.counts[PlanCount.BEST_SEGMENT_COUNT] = count
+    work.counts[PlanCount.BEST_STAGE] = work.counts[PlanCount.STAGE]
+    work.values[PlanValue.BEST_PATH_COST] = cost
+    work.values[PlanValue.BEST_PATH_MARGIN] = problem.margin
 
 
 def cusps_of(work: PlanningWork) -> int:
     """Return how often the path in hand changes its direction."""
     found = 0
-    for segment in range(1, work.counts[SEGMENT_COUNT]):
+    for segment in range(1, work.counts[PlanCount.SEGMENT_COUNT]):
         if work.segment_length[segment] * work.segment_length[segment - 1] < 0.0:
             found += 1
     return found
@@ -335,15 +323,17 @@ def cusps_of(work: PlanningWork) -> int:
 
 def _next_stage(work: PlanningWork, request: PlanningRequest) -> None:
     """Go on to the next search, or end."""
-    stage = work.counts[STAGE] + 1
-    best = work.counts[BEST_SEGMENT_COUNT] > 0
+    stage = work.counts[PlanCount.STAGE] + 1
+    best = work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0
     last = stage >= len(SEARCH_SCHEDULE)
     if best and (last or not SEARCH_SCHEDULE[stage].always):
-        set_count(work, MEASURED_SEGMENTS, 0)
+        work.counts[PlanCount.MEASURED_SEGMENTS] = 0
         has_transitions = begin_transitions(work, request, MAX_SEGMENTS)
-        set_count(work, PHASE, PlanningPhase.ADD_TRANSITIONS if has_transitions else PlanningPhase.MEASURE_CLEARANCE)
+        work.counts[PlanCount.PHASE] = (
+            PlanningPhase.ADD_TRANSITIONS if has_transitions else PlanningPhase.MEASURE_CLEARANCE
+        )
     elif last:
         _finish(work, PlanningStatus.NO_PATH)
     else:
-        set_count(work, STAGE, stage)
-        set_count(work, PHASE, PlanningPhase.BEGIN)
+        work.counts[PlanCount.STAGE] = stage
+        work.counts[PlanCount.PHASE] = PlanningPhase.BEGIN

@@ -30,13 +30,6 @@ def word_code(a: int, b: int, c: int, d: int, e: int) -> int:
     return a + 3 * (b + 3 * (c + 3 * (d + 3 * e)))
 
 
-def turn_of(code: int, segment: int) -> float:
-    """Return 1.0, 0.0 or -1.0: the turn of a word's segment, left positive."""
-    for _ in range(segment):
-        code = code // 3
-    return float(code % 3 - 1)
-
-
 class ArrivalState(NamedTuple):
     """How the car comes to the start of a word: what the first change of direction and of the wheel are priced by."""
 

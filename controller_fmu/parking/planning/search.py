@@ -14,29 +14,16 @@ from controller_fmu.parking.planning.search_tree import (
     count_expansion,
     pop_lowest,
     push_bucket,
-    set_cost_estimate,
-    set_state,
 )
 from controller_fmu.parking.planning.work import (
-    BEST_COST,
-    BEST_NODE,
-    BEST_PATH_COST,
-    BEST_SEGMENT_COUNT,
     BUCKETS,
     CROWDING_CELLS,
-    EVALUATIONS,
-    EXPANSIONS,
-    FIRST_FOUND_AT,
-    FREE_AT_NODE,
-    FREE_AT_TARGET,
-    LOWEST_BUCKET,
-    NODE_COUNT,
     NODES,
     NONE,
     SLOTS,
+    PlanCount,
     PlanningWork,
-    set_count,
-    set_value,
+    PlanValue,
 )
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
@@ -76,7 +63,7 @@ def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
             distance = free_distance(
                 work, problem.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), problem
             )
-            set_value(work, FREE_AT_TARGET + 3 * gear + turn, distance)
+            work.values[PlanValue.FREE_AT_TARGET + 3 * gear + turn] = distance
     push_open(work, Successor(problem.root, 0.0, 0.0, 0.0, NONE), problem)
 
 
@@ -89,9 +76,9 @@ def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
         node = pop_lowest(work)
         while node != NONE and work.node_state[node] == CLOSED:
             node = pop_lowest(work)
-        set_count(work, EVALUATIONS, work.counts[EVALUATIONS] + 1)
+        work.counts[PlanCount.EVALUATIONS] = work.counts[PlanCount.EVALUATIONS] + 1
         if node == NONE or is_spent(work, problem):
-            return NOTHING if work.counts[BEST_NODE] == NONE else FOUND
+            return NOTHING if work.counts[PlanCount.BEST_NODE] == NONE else FOUND
         waits = evaluate(work, node, problem)
         if not waits:
             expand(work, node, problem)
@@ -102,14 +89,20 @@ def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
 def is_spent(work: PlanningWork, problem: SearchProblem) -> bool:
     """Return whether the search has done all the work it may."""
     most = problem.stage.max_expansions
-    full = work.counts[NODE_COUNT] > NODES - MAX_SUCCESSORS
-    return full or work.counts[EXPANSIONS] >= most or work.counts[EVALUATIONS] >= EVALUATIONS_PER_EXPANSION * most
+    full = work.counts[PlanCount.NODE_COUNT] > NODES - MAX_SUCCESSORS
+    return (
+        full
+        or work.counts[PlanCount.EXPANSIONS] >= most
+        or work.counts[PlanCount.EVALUATIONS] >= EVALUATIONS_PER_EXPANSION * most
+    )
 
 
 def is_settled(work: PlanningWork) -> bool:
     """Return whether a distance is found and some more have been looked for."""
-    found_at = work.counts[FIRST_FOUND_AT]
-    return work.counts[BEST_NODE] != NONE and work.counts[EXPANSIONS] > found_at + found_at // 2 + 20
+    found_at = work.counts[PlanCount.FIRST_FOUND_AT]
+    return (
+        work.counts[PlanCount.BEST_NODE] != NONE and work.counts[PlanCount.EXPANSIONS] > found_at + found_at // 2 + 20
+    )
 
 
 def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
@@ -119,16 +112,16 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
         words = list_words(work, pose, problem.target, gear_of(work, node), lock_of(work, node, problem), problem)
         shortest = work.word_cost[cheapest_word(work, words)]
         cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
-        set_cost_estimate(work, node, shortest if shortest > cost_to_go else cost_to_go)
-        set_state(work, node, EVALUATED)
+        work.node_cost_estimate[node] = shortest if shortest > cost_to_go else cost_to_go
+        work.node_state[node] = EVALUATED
     if work.node_cost[node] + work.node_cost_estimate[node] >= bound_cost(work):
-        set_state(work, node, CLOSED)
+        work.node_state[node] = CLOSED
         return True
     crowd = problem.stage.resolution.crowding_cost * work.crowding[region_of(pose, problem)]
     bucket = bucket_of(
         work.node_cost[node] + problem.stage.resolution.heuristic_weight * work.node_cost_estimate[node] + crowd
     )
-    if bucket <= work.counts[LOWEST_BUCKET] + 1:
+    if bucket <= work.counts[PlanCount.LOWEST_BUCKET] + 1:
         return False
     push_bucket(work, node, bucket)
     return True
@@ -136,8 +129,8 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
 
 def bound_cost(work: PlanningWork) -> float:
     """Return the cost [m] of the best path found, by this search or one before it; nodes that cost more are no use."""
-    known = work.values[BEST_PATH_COST] if work.counts[BEST_SEGMENT_COUNT] > 0 else UNREACHABLE
-    found = work.values[BEST_COST] if work.counts[BEST_NODE] != NONE else UNREACHABLE
+    known = work.values[PlanValue.BEST_PATH_COST] if work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0 else UNREACHABLE
+    found = work.values[PlanValue.BEST_COST] if work.counts[PlanCount.BEST_NODE] != NONE else UNREACHABLE
     return min(known, found)
 
 
@@ -146,16 +139,16 @@ def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
     pose = pose_of(work, node)
     gear = gear_of(work, node)
     lock = lock_of(work, node, problem)
-    none_yet = work.counts[BEST_NODE] == NONE
+    none_yet = work.counts[PlanCount.BEST_NODE] == NONE
     count_expansion(work, region_of(pose, problem))
-    set_state(work, node, CLOSED)
-    set_count(work, EXPANSIONS, work.counts[EXPANSIONS] + 1)
+    work.node_state[node] = CLOSED
+    work.counts[PlanCount.EXPANSIONS] = work.counts[PlanCount.EXPANSIONS] + 1
     measure_free_distances(work, pose, problem)
     words = list_words(work, pose, problem.target, gear, lock, problem)
     try_analytic_expansion(work, node, pose, words, problem)
     generate_successors(work, node, pose, gear, lock, problem)
-    if none_yet and work.counts[BEST_NODE] != NONE:
-        set_count(work, FIRST_FOUND_AT, work.counts[EXPANSIONS])
+    if none_yet and work.counts[PlanCount.BEST_NODE] != NONE:
+        work.counts[PlanCount.FIRST_FOUND_AT] = work.counts[PlanCount.EXPANSIONS]
 
 
 def pose_of(work: PlanningWork, node: int) -> Pose:
@@ -199,10 +192,8 @@ def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProble
     for gear in range(2):
         for turn in range(5):
             k = 0.5 * (turn - 2) * problem.car.max_curvature
-            set_value(
-                work,
-                FREE_AT_NODE + 5 * gear + turn,
-                free_distance(work, pose, 2.0 * gear - 1.0, k, MAX_LENGTH, problem),
+            work.values[PlanValue.FREE_AT_NODE + 5 * gear + turn] = free_distance(
+                work, pose, 2.0 * gear - 1.0, k, MAX_LENGTH, problem
             )
 
 
@@ -213,7 +204,7 @@ def generate_successors(
     for number in range(10):
         direction = 2.0 * (number // 5) - 1.0
         turn = 0.5 * (number % 5 - 2)
-        free = work.values[FREE_AT_NODE + number]
+        free = work.values[PlanValue.FREE_AT_NODE + number]
         same = abs(turn - lock) < 1e-3
         longest = abs(work.node_length[node]) >= MAX_LENGTH - 0.01
         if not same or gear == 0.0 or (longest and direction == gear):
@@ -254,7 +245,7 @@ def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) 
         if work.node_key[other] == key and work.node_cost[other] <= successor.cost + 0.02:
             return
         if work.node_key[other] == key:
-            set_state(work, other, CLOSED)
+            work.node_state[other] = CLOSED
         other = work.node_slot[other]
     node = add_node(work, successor, key, slot)
     push_bucket(work, node, bucket_of(heuristic(work, successor.pose, successor.cost, problem)))

@@ -9,14 +9,7 @@ from controller_fmu.parking.planning.problem import (
     SearchResolution,
     SearchStage,
 )
-from controller_fmu.parking.planning.work import (
-    COST_TO_GO_CELLS,
-    EDGE_CELLS,
-    GOAL_TIGHTER,
-    MIN_END_CLEARANCE,
-    STAGE,
-    PlanningWork,
-)
+from controller_fmu.parking.planning.work import COST_TO_GO_CELLS, EDGE_CELLS, PlanCount, PlanningWork, PlanValue
 from modelkit.vocabulary import Pose
 
 DEG = math.pi / 180.0
@@ -74,14 +67,14 @@ def search_region(request: PlanningRequest) -> SearchRegion:
 
 def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProblem:
     """Return the search of the stage in hand."""
-    stage = SEARCH_SCHEDULE[work.counts[STAGE]]
+    stage = SEARCH_SCHEDULE[work.counts[PlanCount.STAGE]]
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     goal = Pose(0.0, 0.0, request.goal.heading)
     desired = request.margin * stage.margin_fraction
-    clearance = work.values[MIN_END_CLEARANCE] - CLEARANCE_RESERVE
+    clearance = work.values[PlanValue.MIN_END_CLEARANCE] - CLEARANCE_RESERVE
     margin = desired if desired < clearance else clearance
     margin = margin if margin > MIN_MARGIN else MIN_MARGIN
-    from_goal = stage.root_at_tighter_end == (work.counts[GOAL_TIGHTER] == 1)
+    from_goal = stage.root_at_tighter_end == (work.counts[PlanCount.GOAL_TIGHTER] == 1)
     root = goal if from_goal else start
     target = start if from_goal else goal
     return SearchProblem(root, target, request.car, search_region(request), from_goal, margin, stage)

@@ -2,18 +2,14 @@
 
 from controller_fmu.parking.planning.problem import Successor
 from controller_fmu.parking.planning.work import (
-    BEST_CODE,
-    BEST_COST,
-    BEST_LENGTHS,
-    BEST_NODE,
     BUCKETS,
     CROWDING_CELLS,
-    LOWEST_BUCKET,
-    NODE_COUNT,
     NONE,
     SLOTS,
     TREE_COUNTS,
+    PlanCount,
     PlanningWork,
+    PlanValue,
 )
 
 
@@ -27,14 +23,14 @@ def clear_tree(work: PlanningWork) -> None:
         work.crowding[region] = 0
     for which in range(TREE_COUNTS):
         work.counts[which] = 0
-    work.counts[LOWEST_BUCKET] = BUCKETS
-    work.counts[BEST_NODE] = NONE
+    work.counts[PlanCount.LOWEST_BUCKET] = BUCKETS
+    work.counts[PlanCount.BEST_NODE] = NONE
 
 
 def add_node(work: PlanningWork, successor: Successor, key: int, slot: int) -> int:
     """Add a node to the tree and to its slot of the table; returns its number."""
-    node = work.counts[NODE_COUNT]
-    work.counts[NODE_COUNT] = node + 1
+    node = work.counts[PlanCount.NODE_COUNT]
+    work.counts[PlanCount.NODE_COUNT] = node + 1
     work.node_x[node] = successor.pose.x
     work.node_y[node] = successor.pose.y
     work.node_heading[node] = successor.pose.heading
@@ -50,36 +46,26 @@ def add_node(work: PlanningWork, successor: Successor, key: int, slot: int) -> i
     return node
 
 
-def set_cost_estimate(work: PlanningWork, node: int, rest: float) -> None:
-    """Set what the distance from a node to the target is thought to cost [m]."""
-    work.node_cost_estimate[node] = rest
-
-
 def count_expansion(work: PlanningWork, region: int) -> None:
     """Count a region once more."""
     if work.crowding[region] < 30000:
         work.crowding[region] += 1
 
 
-def set_state(work: PlanningWork, node: int, state: int) -> None:
-    """Set what has been done with a node."""
-    work.node_state[node] = state
-
-
 def push_bucket(work: PlanningWork, node: int, bucket: int) -> None:
     """Put a node first into a bucket."""
     work.node_queue[node] = work.bucket[bucket]
     work.bucket[bucket] = node
-    if bucket < work.counts[LOWEST_BUCKET]:
-        work.counts[LOWEST_BUCKET] = bucket
+    if bucket < work.counts[PlanCount.LOWEST_BUCKET]:
+        work.counts[PlanCount.LOWEST_BUCKET] = bucket
 
 
 def pop_lowest(work: PlanningWork) -> int:
     """Take the first node out of the lowest bucket that has any; returns it, or ``NONE``."""
-    bucket = work.counts[LOWEST_BUCKET]
+    bucket = work.counts[PlanCount.LOWEST_BUCKET]
     while bucket < BUCKETS and work.bucket[bucket] == NONE:
         bucket += 1
-    work.counts[LOWEST_BUCKET] = bucket
+    work.counts[PlanCount.LOWEST_BUCKET] = bucket
     if bucket >= BUCKETS:
         return NONE
     node = work.bucket[bucket]
@@ -89,11 +75,11 @@ def pop_lowest(work: PlanningWork) -> int:
 
 def set_best(work: PlanningWork, node: int, word: int, cost: float) -> None:
     """Remember the best distance to the target: along the tree to ``node``, then along ``word``."""
-    work.counts[BEST_NODE] = node
-    work.counts[BEST_CODE] = work.word_code[word]
-    work.values[BEST_COST] = cost
-    work.values[BEST_LENGTHS] = work.word_a[word]
-    work.values[BEST_LENGTHS + 1] = work.word_b[word]
-    work.values[BEST_LENGTHS + 2] = work.word_c[word]
-    work.values[BEST_LENGTHS + 3] = work.word_d[word]
-    work.values[BEST_LENGTHS + 4] = work.word_e[word]
+    work.counts[PlanCount.BEST_NODE] = node
+    work.counts[PlanCount.BEST_CODE] = work.word_code[word]
+    work.values[PlanValue.BEST_COST] = cost
+    work.values[PlanValue.BEST_LENGTHS] = work.word_a[word]
+    work.values[PlanValue.BEST_LENGTHS + 1] = work.word_b[word]
+    work.values[PlanValue.BEST_LENGTHS + 2] = work.word_c[word]
+    work.values[PlanValue.BEST_LENGTHS + 3] = work.word_d[word]
+    work.values[PlanValue.BEST_LENGTHS + 4] = work.word_e[word]

@@ -5,20 +5,13 @@ from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
 from controller_fmu.parking.planning.reeds_shepp import list_words
 from controller_fmu.parking.planning.work import (
-    BEST_CODE,
-    BEST_LENGTHS,
-    BEST_NODE,
-    HAS_GAINED,
     NONE,
-    PASS_COUNT,
-    SEGMENT_COUNT,
     SEGMENTS,
-    SPAN,
-    SPAN_START,
+    PlanCount,
     PlanningWork,
+    PlanValue,
     discard_word,
     move_segments,
-    set_count,
     set_segment,
 )
 from modelkit.maths import sign
@@ -34,32 +27,32 @@ SAME_CURVATURE = 1e-9
 
 def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
     """Copy the distance that was found from tree and word to the segments of the path."""
-    set_count(work, SEGMENT_COUNT, 0)
+    work.counts[PlanCount.SEGMENT_COUNT] = 0
     depth = 0
-    node = work.counts[BEST_NODE]
+    node = work.counts[PlanCount.BEST_NODE]
     while node != NONE and work.node_parent[node] != NONE:
         depth += 1
         node = work.node_parent[node]
     pose = problem.root
     for level in range(depth):
-        node = work.counts[BEST_NODE]
+        node = work.counts[PlanCount.BEST_NODE]
         for _ in range(depth - 1 - level):
             node = work.node_parent[node]
         pose = append_segment(work, pose, work.node_length[node], work.node_curvature[node])
-    rest = work.counts[BEST_CODE]
+    rest = work.counts[PlanCount.BEST_CODE]
     for number in range(5):
         k = (rest % 3 - 1) * problem.car.max_curvature
         rest = rest // 3
-        pose = append_segment(work, pose, work.values[BEST_LENGTHS + number], k)
-    set_count(work, SPAN, work.counts[SEGMENT_COUNT])
-    set_count(work, SPAN_START, 0)
-    set_count(work, HAS_GAINED, 0)
-    set_count(work, PASS_COUNT, 0)
+        pose = append_segment(work, pose, work.values[PlanValue.BEST_LENGTHS + number], k)
+    work.counts[PlanCount.SPAN] = work.counts[PlanCount.SEGMENT_COUNT]
+    work.counts[PlanCount.SPAN_START] = 0
+    work.counts[PlanCount.HAS_GAINED] = 0
+    work.counts[PlanCount.PASS_COUNT] = 0
 
 
 def append_segment(work: PlanningWork, pose: Pose, distance: float, k: float) -> Pose:
     """Add a segment to the end of the path, or to its last segment if that goes on alike; returns where it ends."""
-    count = work.counts[SEGMENT_COUNT]
+    count = work.counts[PlanCount.SEGMENT_COUNT]
     if distance == 0.0 or count >= SEGMENTS:
         return pose
     if count > 0:
@@ -69,33 +62,33 @@ def append_segment(work: PlanningWork, pose: Pose, distance: float, k: float) ->
             set_segment(work, count - 1, begin, last + distance, k)
             return pose_along_arc(begin, last + distance, k)
     set_segment(work, count, pose, distance, k)
-    set_count(work, SEGMENT_COUNT, count + 1)
+    work.counts[PlanCount.SEGMENT_COUNT] = count + 1
     return pose_along_arc(pose, distance, k)
 
 
 def smooth(work: PlanningWork, problem: SearchProblem) -> bool:
     """Try the next span; returns whether there is more to try."""
-    count = work.counts[SEGMENT_COUNT]
-    span = work.counts[SPAN]
-    place = work.counts[SPAN_START]
+    count = work.counts[PlanCount.SEGMENT_COUNT]
+    span = work.counts[PlanCount.SPAN]
+    place = work.counts[PlanCount.SPAN_START]
     if place + span > count:
         span = span - 1 if span <= count else count
         place = 0
     if span > MAX_SPAN:
         span = MAX_SPAN
     if span < 2:
-        if work.counts[HAS_GAINED] == 0 or work.counts[PASS_COUNT] >= MAX_PASSES:
+        if work.counts[PlanCount.HAS_GAINED] == 0 or work.counts[PlanCount.PASS_COUNT] >= MAX_PASSES:
             return False
-        set_count(work, HAS_GAINED, 0)
-        set_count(work, PASS_COUNT, work.counts[PASS_COUNT] + 1)
-        set_count(work, SPAN, count)
-        set_count(work, SPAN_START, 0)
+        work.counts[PlanCount.HAS_GAINED] = 0
+        work.counts[PlanCount.PASS_COUNT] = work.counts[PlanCount.PASS_COUNT] + 1
+        work.counts[PlanCount.SPAN] = count
+        work.counts[PlanCount.SPAN_START] = 0
         return True
     replaced = _replace_span(work, place, span, problem)
-    set_count(work, SPAN, span)
-    set_count(work, SPAN_START, place if replaced else place + 1)
+    work.counts[PlanCount.SPAN] = span
+    work.counts[PlanCount.SPAN_START] = place if replaced else place + 1
     if replaced:
-        set_count(work, HAS_GAINED, 1)
+        work.counts[PlanCount.HAS_GAINED] = 1
     return True
 
 
@@ -117,7 +110,7 @@ def joint_cost(distance: float, k: float, next_way: float, next_k: float, proble
 
 def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> float:
     """Return the cost [m] of some segments of the path with the joints at their ends."""
-    count = work.counts[SEGMENT_COUNT]
+    count = work.counts[PlanCount.SEGMENT_COUNT]
     cost = 0.0
     for segment in range(place, place + span):
         cost += abs(work.segment_length[segment])
@@ -138,12 +131,12 @@ def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem)
 
 def path_cost(work: PlanningWork, problem: SearchProblem) -> float:
     """Return the cost [m] of the path."""
-    return span_cost(work, 0, work.counts[SEGMENT_COUNT], problem)
+    return span_cost(work, 0, work.counts[PlanCount.SEGMENT_COUNT], problem)
 
 
 def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> bool:
     """Replace some segments by the cheapest free word if that is cheaper; returns whether it was."""
-    count = work.counts[SEGMENT_COUNT]
+    count = work.counts[PlanCount.SEGMENT_COUNT]
     start = pose_at(work, place)
     end = end_of(work, place + span - 1)
     gear = sign(work.segment_length[place - 1]) if place > 0 else 0.0
@@ -181,7 +174,7 @@ def _cost_after(work: PlanningWork, word: int, segment: int, problem: SearchProb
 
 def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: SearchProblem) -> bool:
     """Put a word in place of some segments; returns whether there was room."""
-    count = work.counts[SEGMENT_COUNT]
+    count = work.counts[PlanCount.SEGMENT_COUNT]
     used = 0
     for number in range(5):
         if word_length(work, word, number) != 0.0:
@@ -200,5 +193,5 @@ def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: Sea
             set_segment(work, segment, pose, distance, k)
             pose = pose_along_arc(pose, distance, k)
             segment += 1
-    set_count(work, SEGMENT_COUNT, count + used - span)
+    work.counts[PlanCount.SEGMENT_COUNT] = count + used - span
     return True

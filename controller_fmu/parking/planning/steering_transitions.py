@@ -15,22 +15,7 @@ from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.curvature_transition import SAME_CURVATURE
 from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest, SearchProblem
 from controller_fmu.parking.planning.shortcut_smoothing import pose_at
-from controller_fmu.parking.planning.work import (
-    ARC_COUNT,
-    BEST_PATH_MARGIN,
-    BEST_SEGMENT_COUNT,
-    SEGMENT_COUNT,
-    TRANSITION_TRIED,
-    PlanningWork,
-    set_arc_curvature,
-    set_best_segment,
-    set_best_speed,
-    set_count,
-    set_segment,
-    set_segment_length,
-    set_segment_speed,
-    set_transition_fraction,
-)
+from controller_fmu.parking.planning.work import PlanCount, PlanningWork, PlanValue, set_best_segment, set_segment
 from modelkit.maths import clamp, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -76,16 +61,16 @@ class SteeringTransition(NamedTuple):
 
 def begin_transitions(work: PlanningWork, request: PlanningRequest, max_segments: int) -> bool:
     """Request all transitions in full; returns whether the path, of at most ``max_segments``, can have any."""
-    count = work.counts[BEST_SEGMENT_COUNT]
-    set_count(work, TRANSITION_TRIED, ALL_JOINTS)
-    set_count(work, ARC_COUNT, MAX_ARCS)
+    count = work.counts[PlanCount.BEST_SEGMENT_COUNT]
+    work.counts[PlanCount.TRANSITION_TRIED] = ALL_JOINTS
+    work.counts[PlanCount.ARC_COUNT] = MAX_ARCS
     for joint in range(count + 1):
-        set_transition_fraction(work, joint, 1.0)
+        work.transition_fraction[joint] = 1.0
     _unbend(work, request.dynamics)
     if request.dynamics.rate <= 0.0 or count < 3:
         return False
-    while work.counts[ARC_COUNT] > MIN_ARCS and _segments_with(work, request.dynamics) > max_segments:
-        set_count(work, ARC_COUNT, work.counts[ARC_COUNT] - 1)
+    while work.counts[PlanCount.ARC_COUNT] > MIN_ARCS and _segments_with(work, request.dynamics) > max_segments:
+        work.counts[PlanCount.ARC_COUNT] = work.counts[PlanCount.ARC_COUNT] - 1
     return True
 
 
@@ -95,16 +80,16 @@ def try_transitions(work: PlanningWork, request: PlanningRequest, problem: Searc
     If not all of them fit, one is tried after the other, if the path fits with what tracking needs of the lock: first
     those about a stop, where the vehicle would stand for as long as the wheel turns.
     """
-    joints = work.counts[BEST_SEGMENT_COUNT] + 1
+    joints = work.counts[PlanCount.BEST_SEGMENT_COUNT] + 1
     fits = _fit(work, request, problem, max_segments)
-    number = work.counts[TRANSITION_TRIED]
+    number = work.counts[PlanCount.TRANSITION_TRIED]
     if number == ALL_JOINTS:
         if fits:
             _keep(work)
             return False
         for joint in range(joints):
-            set_transition_fraction(work, joint, 0.0)
-        set_count(work, TRANSITION_TRIED, NO_JOINT)
+            work.transition_fraction[joint] = 0.0
+        work.counts[PlanCount.TRANSITION_TRIED] = NO_JOINT
         return True
     if number == NO_JOINT:
         if not fits:
@@ -114,16 +99,16 @@ def try_transitions(work: PlanningWork, request: PlanningRequest, problem: Searc
         joint = number % joints
         fraction = SHORTENING_FACTOR * work.transition_fraction[joint]
         least = MIN_FRACTION if number < joints else MIN_FRACTION_IN_GEAR
-        set_transition_fraction(work, joint, fraction if fraction >= least else 0.0)
+        work.transition_fraction[joint] = fraction if fraction >= least else 0.0
         number = number if fraction >= least else number + 1
     else:
         number += 1
     while number < 2 * joints and not _is_worth(work, number, joints):
         number += 1
-    set_count(work, TRANSITION_TRIED, number)
+    work.counts[PlanCount.TRANSITION_TRIED] = number
     if number < 2 * joints:
         if work.transition_fraction[number % joints] <= 0.0:
-            set_transition_fraction(work, number % joints, 1.0)
+            work.transition_fraction[number % joints] = 1.0
         return True
     fits = _fit(work, request, problem, max_segments)
     if fits:
@@ -141,7 +126,7 @@ def _is_worth(work: PlanningWork, number: int, joints: int) -> bool:
 
 def _stops_at(work: PlanningWork, joint: int) -> bool:
     """Return whether the vehicle stands where a segment begins."""
-    if joint == 0 or joint == work.counts[BEST_SEGMENT_COUNT]:
+    if joint == 0 or joint == work.counts[PlanCount.BEST_SEGMENT_COUNT]:
         return True
     return work.best_length[joint - 1] * work.best_length[joint] < 0.0
 
@@ -159,21 +144,23 @@ def _fit(work: PlanningWork, request: PlanningRequest, problem: SearchProblem, m
     while short >= 0:
         if abs(work.arc_curvature[short]) <= MIN_CURVATURE_FRACTION * abs(work.best_curvature[short]):
             return False
-        set_arc_curvature(work, short, UNBENDING_FACTOR * work.arc_curvature[short])
+        work.arc_curvature[short] = UNBENDING_FACTOR * work.arc_curvature[short]
         short = _solve(work, start, request.goal.heading, request.dynamics)
-    return short == SOLVED and _is_free(work, problem._replace(margin=MARGIN_FRACTION * work.values[BEST_PATH_MARGIN]))
+    return short == SOLVED and _is_free(
+        work, problem._replace(margin=MARGIN_FRACTION * work.values[PlanValue.BEST_PATH_MARGIN])
+    )
 
 
 def _unbend(work: PlanningWork, dynamics: DrivingDynamics) -> None:
     """Give all segments the curvature that they were found with, but for what tracking needs of the lock."""
-    for segment in range(work.counts[BEST_SEGMENT_COUNT]):
-        set_arc_curvature(work, segment, clamp(work.best_curvature[segment], -dynamics.curvature, dynamics.curvature))
+    for segment in range(work.counts[PlanCount.BEST_SEGMENT_COUNT]):
+        work.arc_curvature[segment] = clamp(work.best_curvature[segment], -dynamics.curvature, dynamics.curvature)
 
 
 def _segments_with(work: PlanningWork, dynamics: DrivingDynamics) -> int:
     """Return how many segments the path has with its transitions."""
-    segments = work.counts[BEST_SEGMENT_COUNT]
-    for joint in range(work.counts[BEST_SEGMENT_COUNT] + 1):
+    segments = work.counts[PlanCount.BEST_SEGMENT_COUNT]
+    for joint in range(work.counts[PlanCount.BEST_SEGMENT_COUNT] + 1):
         transition = _transition(work, joint, dynamics)
         segments += _arc_count(work, transition.stops, transition.early) + _arc_count(
             work, transition.stops, transition.late
@@ -185,7 +172,7 @@ def _arc_count(work: PlanningWork, stops: bool, time: float) -> int:
     """Return the number of arcs on one side of a transition."""
     if time <= 0.0:
         return 0
-    return work.counts[ARC_COUNT] if stops else work.counts[ARC_COUNT] // 2
+    return work.counts[PlanCount.ARC_COUNT] if stops else work.counts[PlanCount.ARC_COUNT] // 2
 
 
 def _transition(work: PlanningWork, joint: int, dynamics: DrivingDynamics) -> SteeringTransition:
@@ -195,7 +182,7 @@ def _transition(work: PlanningWork, joint: int, dynamics: DrivingDynamics) -> St
     the wheel turns longer where the vehicle slows down than where it sets out, by the root of the accelerations, as the
     same distance costs the same time there.
     """
-    count = work.counts[BEST_SEGMENT_COUNT]
+    count = work.counts[PlanCount.BEST_SEGMENT_COUNT]
     k0 = work.arc_curvature[joint - 1] if joint > 0 else 0.0
     k1 = work.arc_curvature[joint] if joint < count else 0.0
     before = math.atan(dynamics.wheelbase * k0)
@@ -248,8 +235,8 @@ def _solve(work: PlanningWork, start: Pose, heading: float, dynamics: DrivingDyn
 
 def _lay_out(work: PlanningWork, dynamics: DrivingDynamics) -> None:
     """Write the segments of the path with transitions; those between become shorter by what transitions take."""
-    set_count(work, SEGMENT_COUNT, 0)
-    count = work.counts[BEST_SEGMENT_COUNT]
+    work.counts[PlanCount.SEGMENT_COUNT] = 0
+    count = work.counts[PlanCount.BEST_SEGMENT_COUNT]
     before = _transition(work, 0, dynamics)
     for segment in range(count):
         direction = sign(work.best_length[segment])
@@ -285,16 +272,16 @@ def _add_half(
 
 def _add(work: PlanningWork, distance: float, k: float, speed: float) -> None:
     """Add a segment; where it begins is not known yet."""
-    number = work.counts[SEGMENT_COUNT]
+    number = work.counts[PlanCount.SEGMENT_COUNT]
     set_segment(work, number, Pose(), distance, k)
-    set_segment_speed(work, number, speed)
-    set_count(work, SEGMENT_COUNT, number + 1)
+    work.segment_speed[number] = speed
+    work.counts[PlanCount.SEGMENT_COUNT] = number + 1
 
 
 def _end(work: PlanningWork, start: Pose) -> Pose:
     """Set where the segments laid out begin; returns where the path ends."""
     pose = start
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         distance = work.segment_length[number]
         k = work.segment_curvature[number]
         set_segment(work, number, pose, distance, k)
@@ -305,7 +292,7 @@ def _end(work: PlanningWork, start: Pose) -> Pose:
 def _too_short(work: PlanningWork) -> int:
     """Return the first segment that is too short between its transitions, or ``SOLVED``."""
     segment = 0
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         if work.segment_speed[number] == 0.0:
             if work.segment_length[number] * sign(work.best_length[segment]) < MIN_ARC:
                 return segment
@@ -352,7 +339,7 @@ def _normal_matrix(work: PlanningWork, end: Pose) -> GoalNormalMatrix:
     yh = 0.0
     hh = 0.0
     segment = 0
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         if work.segment_speed[number] == 0.0:
             distance = work.best_length[segment]
             slope = _end_derivative(work, number, sign(distance), end)
@@ -386,12 +373,12 @@ def _correct_lengths(work: PlanningWork, end: Pose, turn: float) -> bool:
     y = (-m01 * end.x - m11 * end.y + m12 * turn) / size
     h = (-m02 * end.x - m12 * end.y + m22 * turn) / size
     segment = 0
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         if work.segment_speed[number] == 0.0:
             distance = work.best_length[segment]
             slope = _end_derivative(work, number, sign(distance), end)
             change = _bent_length(work, segment) * (slope.x * x + slope.y * y + slope.heading * h)
-            set_segment_length(work, number, work.segment_length[number] + sign(distance) * change)
+            work.segment_length[number] = work.segment_length[number] + sign(distance) * change
             segment += 1
     return True
 
@@ -399,7 +386,7 @@ def _correct_lengths(work: PlanningWork, end: Pose, turn: float) -> bool:
 def _is_free(work: PlanningWork, problem: SearchProblem) -> bool:
     """Return whether the path laid out keeps its margin."""
     gap = clearance(work, pose_at(work, 0), problem) - problem.margin
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         distance = work.segment_length[number]
         driven = sweep_arc(work, pose_at(work, number), gap, distance, work.segment_curvature[number], problem)
         if driven.distance < abs(distance):
@@ -410,7 +397,7 @@ def _is_free(work: PlanningWork, problem: SearchProblem) -> bool:
 
 def _keep(work: PlanningWork) -> None:
     """Keep the path as it is laid out."""
-    for number in range(work.counts[SEGMENT_COUNT]):
+    for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         set_best_segment(work, number, work.segment_length[number], work.segment_curvature[number])
-        set_best_speed(work, number, work.segment_speed[number])
-    set_count(work, BEST_SEGMENT_COUNT, work.counts[SEGMENT_COUNT])
+        work.best_speed[number] = work.segment_speed[number]
+    work.counts[PlanCount.BEST_SEGMENT_COUNT] = work.counts[PlanCount.SEGMENT_COUNT]

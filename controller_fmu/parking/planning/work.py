@@ -1,5 +1,6 @@
 """The work arrays of a search and functions that write to them; those of the tree are in ``search_tree.py``."""
 
+from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES
@@ -85,61 +86,60 @@ class PlanningWork(NamedTuple):
     values: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]
 
 
-NODE_COUNT = 0
-LOWEST_BUCKET = 1
-"""Bucket of the queue below which all are empty."""
-EXPANSIONS = 2
-BEST_NODE = 3
-BEST_CODE = 4
-FIRST_FOUND_AT = 5
-"""Expansions until the first distance was found."""
-SEGMENT_COUNT = 6
-SPAN = 7
-SPAN_START = 8
-HAS_GAINED = 9
-PASS_COUNT = 10
-EVALUATIONS = 11
 TREE_COUNTS = 12
 """So many are of one search."""
-COUNT = 19
-"""Steps done for the request."""
-PHASE = 12
-STAGE = 13
-STATUS = 14
-EDGE_COUNT = 15
-BEST_SEGMENT_COUNT = 16
-BEST_STAGE = 17
-GOAL_TIGHTER = 18
-VERTEX_COUNT = 21
-"""Vertices of the obstacle map in use."""
-MEASURED_SEGMENTS = 20
-"""Segments of the path kept about whose begin the room is known."""
-TRANSITION_TRIED = 22
-"""Number of the transition that is tried."""
-ARC_COUNT = 23
-"""Arcs of a transition on one side of a stop."""
-
-BEST_COST = 0
-BEST_LENGTHS = 1
-"""And four more: the lengths of the word that leads from the best node to the target."""
-FREE_AT_TARGET = 6
-"""And five more: how far the car can drive from the target, by gear and turn."""
-FREE_AT_NODE = 12
-"""And nine more: the same at the node in hand, by gear and five turns."""
-MIN_END_CLEARANCE = 22
-"""Clearance [m] at start or goal, whichever has less."""
-BEST_PATH_COST = 23
-BEST_PATH_MARGIN = 24
 
 
-def set_count(work: PlanningWork, which: int, value: int) -> None:
-    """Set one of the counts and places."""
-    work.counts[which] = value
+class PlanCount(IntEnum):
+    """Places of the counts."""
+
+    NODE_COUNT = 0
+    LOWEST_BUCKET = 1
+    """Bucket of the queue below which all are empty."""
+    EXPANSIONS = 2
+    BEST_NODE = 3
+    BEST_CODE = 4
+    FIRST_FOUND_AT = 5
+    """Expansions until the first distance was found."""
+    SEGMENT_COUNT = 6
+    SPAN = 7
+    SPAN_START = 8
+    HAS_GAINED = 9
+    PASS_COUNT = 10
+    EVALUATIONS = 11
+    COUNT = 19
+    """Steps done for the request."""
+    PHASE = 12
+    STAGE = 13
+    STATUS = 14
+    EDGE_COUNT = 15
+    BEST_SEGMENT_COUNT = 16
+    BEST_STAGE = 17
+    GOAL_TIGHTER = 18
+    VERTEX_COUNT = 21
+    """Vertices of the obstacle map in use."""
+    MEASURED_SEGMENTS = 20
+    """Segments of the path kept about whose begin the room is known."""
+    TRANSITION_TRIED = 22
+    """Number of the transition that is tried."""
+    ARC_COUNT = 23
+    """Arcs of a transition on one side of a stop."""
 
 
-def set_value(work: PlanningWork, which: int, value: float) -> None:
-    """Set one of the numbers."""
-    work.values[which] = value
+class PlanValue(IntEnum):
+    """Places of the numbers."""
+
+    BEST_COST = 0
+    BEST_LENGTHS = 1
+    """And four more: the lengths of the word that leads from the best node to the target."""
+    FREE_AT_TARGET = 6
+    """And five more: how far the car can drive from the target, by gear and turn."""
+    FREE_AT_NODE = 12
+    """And nine more: the same at the node in hand, by gear and five turns."""
+    MIN_END_CLEARANCE = 22
+    """Clearance [m] at start or goal, whichever has less."""
+    BEST_PATH_COST = 23
+    BEST_PATH_MARGIN = 24
 
 
 def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:
@@ -150,36 +150,11 @@ def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:
     work.edge_y2[edge] = end.y
 
 
-def set_cell_start(work: PlanningWork, cell: int, place: int) -> None:
-    """Set where a cell's list of edges begins."""
-    work.cell_start[cell] = place
-
-
-def set_cell_edge(work: PlanningWork, place: int, edge: int) -> None:
-    """Set an item of the lists of edges."""
-    work.cell_edge[place] = edge
-
-
 def clear_cost_to_go(work: PlanningWork, cells: int) -> None:
     """Make every cell of the cost-to-go grid free and unmeasured."""
     for cell in range(cells):
         work.cost_to_go[cell] = 1e6
         work.cost_to_go_next[cell] = -2
-
-
-def set_cost_to_go(work: PlanningWork, cell: int, distance: float) -> None:
-    """Set a cell's distance to the target."""
-    work.cost_to_go[cell] = distance
-
-
-def set_next_cell(work: PlanningWork, cell: int, after: int) -> None:
-    """Set the cell after this one in its bucket."""
-    work.cost_to_go_next[cell] = after
-
-
-def set_bucket(work: PlanningWork, bucket: int, first: int) -> None:
-    """Set the first of a bucket."""
-    work.bucket[bucket] = first
 
 
 def set_word(
@@ -227,44 +202,9 @@ def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int
     work.corner_of[vertex] = polygon
 
 
-def set_requested(work: PlanningWork, which: int, value: float) -> None:
-    """Remember a number of the request."""
-    work.requested[which] = value
-
-
 def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:
     """Set a segment of the best path yet; of its room nothing is known."""
     work.best_length[segment] = distance
     work.best_curvature[segment] = k
     work.best_speed[segment] = 0.0
-    set_clearance(work, segment, 0.0)
-
-
-def set_best_speed(work: PlanningWork, segment: int, speed: float) -> None:
-    """Set the largest speed of a segment of the best path yet."""
-    work.best_speed[segment] = speed
-
-
-def set_segment_speed(work: PlanningWork, segment: int, speed: float) -> None:
-    """Set the largest speed of a segment of the path."""
-    work.segment_speed[segment] = speed
-
-
-def set_transition_fraction(work: PlanningWork, joint: int, fraction: float) -> None:
-    """Set the fraction of the transition about the begin of a segment."""
-    work.transition_fraction[joint] = fraction
-
-
-def set_segment_length(work: PlanningWork, segment: int, distance: float) -> None:
-    """Set the distance of a segment of the path."""
-    work.segment_length[segment] = distance
-
-
-def set_arc_curvature(work: PlanningWork, segment: int, k: float) -> None:
-    """Set the curvature of a segment between its transitions."""
-    work.arc_curvature[segment] = k
-
-
-def set_clearance(work: PlanningWork, segment: int, clearance: float) -> None:
-    """Set what room there is where a segment of the best path begins."""
-    work.best_clearance[segment] = clearance
+    work.best_clearance[segment] = 0.0

@@ -55,8 +55,7 @@ from modelkit.vocabulary import Pose
 
 def begin_plan(memory: ParkingMemory) -> ParkingMemory:
     """Return the memory with a new plan due; the first sample at standstill makes its request."""
-    plan = memory.plan._replace(steps=0, is_found=False, is_relaxed=False, failure=Reason.NONE)
-    return memory._replace(plan=plan)
+    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False, is_relaxed=False, failure=Reason.NONE))
 
 
 def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -66,7 +65,8 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
     before = obstacle_count(memory)
     memory = forget_what_left(memory, inputs, params)
     if obstacle_count(memory) < before:
-        return begin_plan(memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1)))
+        memory = memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1))
+        memory = begin_plan(memory)
     return memory
 
 
@@ -229,16 +229,16 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     """Return the memory with the request for a path from here into the slot as it is known now."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    local_map = memory.perception.local_map
-    landmarks = without_driven_over(local_map.landmarks, pose, outline)
-    memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
+    memory = _without_own_place(memory, pose, outline)
     if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
-    slot = corrected_slot(memory.search, landmarks, outline, params.mapping)
+    slot = corrected_slot(memory.search, memory.perception.local_map.landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
-    beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
-    if memory.plan.is_relaxed:
-        beside = tuple(without_inside(beside[number], slot) for number in range(LANDMARKS))
+    relaxed = memory.plan.is_relaxed
+    beside = tuple(
+        _as_obstacle(memory.perception.local_map.landmarks[number], slot, relaxed, outline, pose)
+        for number in range(LANDMARKS)
+    )
     place = VehiclePlace(pose, road)
     mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
     half_angle = params.car.ultrasonic.half_angle
@@ -258,19 +258,30 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     return memory
 
 
+def _without_own_place(memory: ParkingMemory, pose: Pose, outline: VehicleOutline) -> ParkingMemory:
+    """Return the memory without landmarks where the vehicle stands."""
+    landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
+    return memory._replace(
+        perception=memory.perception._replace(local_map=memory.perception.local_map._replace(landmarks=landmarks))
+    )
+
+
+def _as_obstacle(
+    landmark: Landmark, slot: SlotCandidate, relaxed: bool, outline: VehicleOutline, pose: Pose
+) -> Landmark:
+    """Return a landmark as an obstacle: clear of the vehicle, and none inside a slot if ``relaxed``."""
+    beside = away_from_vehicle(landmark, outline, pose)
+    return without_inside(beside, slot) if relaxed else beside
+
+
 def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with the request for a path to a known goal, among the known polygons and what is not there."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    perception = memory.perception
-    landmarks = perception.local_map.landmarks
-    tolerance = params.monitor.unexplained
-    unknown = tuple(
-        Landmark() if is_on_map(landmarks[number], params.map, tolerance) else landmarks[number]
-        for number in range(LANDMARKS)
+    beside = tuple(
+        _as_unknown(memory.perception.local_map.landmarks[number], outline, pose, params) for number in range(LANDMARKS)
     )
-    beside = tuple(away_from_vehicle(unknown[number], outline, pose) for number in range(LANDMARKS))
-    echoes = KnownEchoes(perception.remembered, (EchoObstacle(),) * SENSORS)
+    echoes = KnownEchoes(memory.perception.remembered, (EchoObstacle(),) * SENSORS)
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
     if memory.strategy == Strategy.PULL_OUT:
@@ -286,18 +297,26 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     return memory._replace(plan=memory.plan._replace(is_final=True)) if is_there else memory
 
 
+def _as_unknown(landmark: Landmark, outline: VehicleOutline, pose: Pose, params: ParkingParams) -> Landmark:
+    """Return a landmark as an obstacle that is on no map: clear of the vehicle, none if the given map has it."""
+    unknown = Landmark() if is_on_map(landmark, params.map, params.monitor.unexplained) else landmark
+    return away_from_vehicle(unknown, outline, pose)
+
+
 def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory of a vehicle that is to pull out, with its neighbours in the map as they are measured."""
     pose = inputs.odometry
     side = road_side(inputs.driver_selection.side)
-    local_map = memory.perception.local_map
     box = free_box(memory.perception.cycle.readings, params.car)
-    landmarks = with_neighbours(local_map.landmarks, box, side, pose, params.car, params.mapping)
-    perception = memory.perception._replace(local_map=local_map._replace(landmarks=landmarks))
+    before = memory.perception.local_map.landmarks
+    landmarks = with_neighbours(before, box, side, pose, params.car, params.mapping)
     goal = pose_on_road(box, side, pose, vehicle_outline(params.car, params.plan.curvature_fraction))
-    plan = memory.plan._replace(way_out=goal)
-    search = SearchProgress(pose=pose, stand=pose)
-    return memory._replace(strategy=Strategy.PULL_OUT, perception=perception, plan=plan, search=search)
+    return memory._replace(
+        strategy=Strategy.PULL_OUT,
+        perception=memory.perception._replace(local_map=memory.perception.local_map._replace(landmarks=landmarks)),
+        plan=memory.plan._replace(way_out=goal),
+        search=SearchProgress(pose=pose, stand=pose),
+    )
 
 
 def _with_plan(
@@ -312,9 +331,10 @@ def _with_plan(
     dynamics = driving_dynamics(memory.strategy, params)
     has_map = memory.strategy == Strategy.POSE
     request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, dynamics, has_map)
-    plan = memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
-    memory = memory._replace(plan=plan)
-    if plan.plans > max(params.plan.max_plans, memory.progress.manoeuvres):
+    memory = memory._replace(
+        plan=memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
+    )
+    if memory.plan.plans > max(params.plan.max_plans, memory.progress.manoeuvres):
         return without_path(memory, Reason.LEFT_PATH, inputs, params)
     return memory
 

@@ -124,12 +124,13 @@ def _with_tracks(
     """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
     echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
-    perception = perception._replace(local_map=perception.local_map._replace(landmarks=landmarks))
     yields = perception.yields
     for number in range(SENSORS):
         if is_yielded_to(tracks[number]):
             yields = yield_cycles(params)
-    return perception._replace(tracks=tracks, echoes=echoes, yields=yields)
+    return perception._replace(
+        local_map=perception.local_map._replace(landmarks=landmarks), tracks=tracks, echoes=echoes, yields=yields
+    )
 
 
 def yield_cycles(params: ParkingParams) -> int:

@@ -142,8 +142,8 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
 def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with the progress on the path and the collision monitor's verdict."""
     context = FollowingContext(params.car, params.drive)
-    progress = track_path(memory.progress, inputs.odometry, inputs.measured_speed, context)
-    direction = sign(progress.path.segments[progress.segment].distance)
+    memory = memory._replace(progress=track_path(memory.progress, inputs.odometry, inputs.measured_speed, context))
+    direction = sign(memory.progress.path.segments[memory.progress.segment].distance)
     angle = inputs.steering_wheel_angle
     if memory.state == ParkingState.STEERING:
         angle = memory.steering_wheel_angle
@@ -154,7 +154,7 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         direction,
         speed if speed > params.threshold.standstill else 0.0,
         math.tan(front_wheel_angle) / params.car.wheelbase,
-        max(progress.upcoming.left, 0.0),
+        max(memory.progress.upcoming.left, 0.0),
         params.monitor.brake_delay,
         params.monitor.brake_deceleration,
     )
@@ -167,12 +167,11 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         params.monitor,
         params.mapping,
     )
-    perception = memory.perception
-    if verdict.is_blocked and not verdict.is_mapped and is_approached(perception.echoes):
-        perception = perception._replace(yields=yield_cycles(params))
-    if perception.yields > 0:
+    if verdict.is_blocked and not verdict.is_mapped and is_approached(memory.perception.echoes):
+        memory = memory._replace(perception=memory.perception._replace(yields=yield_cycles(params)))
+    if memory.perception.yields > 0:
         verdict = verdict._replace(speed_limit=0.0, is_blocked=True, is_mapped=False)
-    return memory._replace(progress=progress, verdict=verdict, perception=perception)
+    return memory._replace(verdict=verdict)
 
 
 def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
@@ -286,9 +285,12 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         remembered = memory.perception.remembered
         if memory.verdict.is_blocked:
             remembered = remember_echoes(remembered, memory.perception.echoes)
-        perception = memory.perception._replace(remembered=remembered)
-        clocks = memory.clocks._replace(blocked=0)
-        memory = begin_plan(memory._replace(perception=perception, clocks=clocks, verdict=MonitorVerdict()))
+        memory = memory._replace(
+            perception=memory.perception._replace(remembered=remembered),
+            clocks=memory.clocks._replace(blocked=0),
+            verdict=MonitorVerdict(),
+        )
+        memory = begin_plan(memory)
     if state == ParkingState.STEERING and before != ParkingState.STEERING:
         memory = memory._replace(progress=next_segment(memory.progress, context))
     if state == ParkingState.DRIVING and before != ParkingState.DRIVING:
@@ -313,16 +315,14 @@ def is_near_slot(memory: ParkingMemory, pose: Pose) -> bool:
 
 def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
     """Return the memory of a vehicle at ``pose`` that is shown a slot, found now or driven into before."""
-    search = memory.search._replace(stand=pose, waited=0)
-    if not search.resumes:
-        search = search._replace(pose=pose, slot_filter=begin_slot_filter(search.slot))
-    search = search._replace(resumes=False)
-    perception = memory.perception._replace(remembered=(EchoObstacle(),) * REMEMBERED)
+    if not memory.search.resumes:
+        slot_filter = begin_slot_filter(memory.search.slot)
+        memory = memory._replace(search=memory.search._replace(pose=pose, slot_filter=slot_filter))
     return memory._replace(
         strategy=Strategy.SLOT,
         reason=Reason.NONE,
-        search=search,
-        perception=perception,
+        search=memory.search._replace(stand=pose, waited=0, resumes=False),
+        perception=memory.perception._replace(remembered=(EchoObstacle(),) * REMEMBERED),
         plan=PlanProgress(),
         progress=PathProgress(stop_correction=memory.progress.stop_correction),
         verdict=MonitorVerdict(),

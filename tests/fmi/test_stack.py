@@ -19,33 +19,14 @@ from tests.fmi.test_native_host import STACK
 BOUND = STACK // 2
 """Bytes of stack that a call may take: the other half is for what the importer does, and for its logger."""
 
-DEEP = {"Controller_parking": "copies of maps and paths on the stack, 120 kB in one frame"}
-"""Known to take more, and why; a test of it fails once that is no longer so."""
-
-
-@pytest.fixture
-def bounded_model(request: pytest.FixtureRequest, any_model: Any) -> Any:
-    """One of all models, expected to fail if it is deep."""
-    if any_model.name in DEEP:
-        request.applymarker(pytest.mark.xfail(strict=True, reason=DEEP[any_model.name]))
-    return any_model
-
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
 @pytest.mark.parametrize("fmi", [pytest.param(2, marks=pytest.mark.release), 3])
-def test_no_chain_of_calls_takes_half_of_a_small_stack(bounded_model: Any, fmi: int, tmp_path: Path) -> None:
-    for name, text in fmu_sources(bounded_model, "{token}", fmi).items():
+def test_no_chain_of_calls_takes_half_of_a_small_stack(any_model: Any, fmi: int, tmp_path: Path) -> None:
+    for name, text in fmu_sources(any_model, "{token}", fmi).items():
         (tmp_path / name).write_text(text)
     options = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fcallgraph-info=su"]
-    command = [
-        "gcc",
-        *options,
-        f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX",
-        "-c",
-        unit_name(bounded_model, fmi),
-        "-o",
-        "x.o",
-    ]
+    command = ["gcc", *options, f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-c", unit_name(any_model, fmi), "-o", "x.o"]
     subprocess.run(command, check=True, cwd=tmp_path)
     found = script("embedded").deepest((tmp_path / "x.ci").read_text())
     public = {name: size for name, size in found.items() if name.startswith(f"fmi{fmi}")}
@@ -55,13 +36,11 @@ def test_no_chain_of_calls_takes_half_of_a_small_stack(bounded_model: Any, fmi: 
 
 
 @pytest.mark.parametrize("kind", ["native_fmus", "fmi3_fmus"])
-def test_the_page_of_an_fmu_states_its_largest_frame(
-    request: pytest.FixtureRequest, kind: str, bounded_model: Any
-) -> None:
-    with zipfile.ZipFile(request.getfixturevalue(kind)[bounded_model.name]) as archive:
+def test_the_page_of_an_fmu_states_its_largest_frame(request: pytest.FixtureRequest, kind: str, any_model: Any) -> None:
+    with zipfile.ZipFile(request.getfixturevalue(kind)[any_model.name]) as archive:
         page = archive.read(PAGE).decode()
     (stated,) = re.findall(r"largest stack frame of its functions, those of a step among them, has (\d+) bytes", page)
-    least = {"Controller": 8_000, "Controller_valet": 8_000}.get(bounded_model.name, 500)
+    least = {"Controller": 8_000, "Controller_valet": 8_000}.get(any_model.name, 500)
     assert least < int(stated) < BOUND
 
 

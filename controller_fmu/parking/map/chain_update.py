@@ -148,27 +148,16 @@ def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
     return is_echo and chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES
 
 
-def finish_chain(
-    landmarks: tuple[Landmark, ...],
-    chain: EchoChain,
-    reading: SideReading,
-    ends_at_edge: bool,
-    params: MappingParams,
-) -> tuple[Landmark, ...]:
+def finish_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
     """Return the landmarks with the fit of a chain that has ended."""
-    if chain.used < MIN_ECHOES:
-        return landmarks
-    return fit_chain(landmarks, chain, reading, ends_at_edge, params).landmarks
+    if update.chain.used >= MIN_ECHOES:
+        update = fit_chain(update, reading, ends_at_edge, params)
+    return update
 
 
-def fit_chain(
-    landmarks: tuple[Landmark, ...],
-    chain: EchoChain,
-    reading: SideReading,
-    ends_at_edge: bool,
-    params: MappingParams,
-) -> ChainUpdate:
+def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
     """Return landmarks and chain after a fit; a chain of two bodies is split, and its first part done."""
+    chain = update.chain
     last = chain.used - 1
     begins = ChainEnd(chain.begins_at_edge, OPEN_INSET)
     ends = ChainEnd(ends_at_edge, OPEN_INSET)
@@ -184,14 +173,14 @@ def fit_chain(
             > SPLIT_CHI_SQUARE
         ):
             known = _with_edges(first, chain.begins_at_edge, True)
-            landmarks = _put(landmarks, chain, known, at, params).landmarks
-            rest = from_echo(chain, at)
+            update = _put(update, known, at, params)
+            update = update._replace(chain=from_echo(chain, at))
             known = _with_edges(second, True, ends_at_edge)
-            return _put(landmarks, rest, known, rest.used, params)
+            return _put(update, known, update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_in_view(chain, whole.landmark, reading.sensor):
-        return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
+        return update._replace(chain=update.chain._replace(fitted=update.chain.used))
     known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
-    return _put(landmarks, chain, known, chain.used, params)
+    return _put(update, known, update.chain.used, params)
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:
@@ -364,9 +353,7 @@ def predicted(segment: Landmark, x: float, y: float) -> float:
     return math.sqrt((u - t) * (u - t) + v * v)
 
 
-def _put(
-    landmarks: tuple[Landmark, ...], chain: EchoChain, fit: SegmentFit, echoes: int, params: MappingParams
-) -> ChainUpdate:
+def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParams) -> ChainUpdate:
     """Return landmarks and chain with a chain's landmark set: the chain's renewed, or a new one.
 
     A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
@@ -374,23 +361,30 @@ def _put(
     its end the odometry drifts over half of its path.
     """
     new = fit.landmark._replace(
-        confirmations=echoes, hh=fit.landmark.hh + 0.5 * chain_path(chain, echoes) * params.heading_variance
+        confirmations=echoes, hh=fit.landmark.hh + 0.5 * chain_path(update.chain, echoes) * params.heading_variance
     )
+    update = update._replace(chain=update.chain._replace(fitted=update.chain.used))
     if new.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(new) > MIN_SURE_LENGTH:
-        return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
+        return update
     if length_of(new) < POINT_LENGTH:
         new = as_point(new)
-    index = chain.landmark
-    other = same_side(landmarks, new, index, params)
-    chain = chain._replace(fitted=chain.used)
-    if other >= 0 and is_better(landmarks[other], new):
-        rest = replace_landmark(landmarks, index, Landmark()) if index >= 0 else landmarks
-        return ChainUpdate(rest, chain._replace(landmark=-1))
+    index = update.chain.landmark
+    other = same_side(update.landmarks, new, index, params)
+    if other >= 0 and is_better(update.landmarks[other], new):
+        update = update._replace(chain=update.chain._replace(landmark=-1))
+        return _with_landmark(update, index, Landmark()) if index >= 0 else update
     if other >= 0 and index >= 0:
-        landmarks = replace_landmark(landmarks, other, Landmark())
+        update = _with_landmark(update, other, Landmark())
     if index < 0:
-        index = other if other >= 0 else free_index(landmarks)
-    return ChainUpdate(replace_landmark(landmarks, index, new), chain._replace(landmark=index))
+        index = other if other >= 0 else free_index(update.landmarks)
+    update = update._replace(chain=update.chain._replace(landmark=index))
+    return _with_landmark(update, index, new)
+
+
+def _with_landmark(update: ChainUpdate, index: int, landmark: Landmark) -> ChainUpdate:
+    """Return the update with the landmark at ``index`` replaced."""
+    at = min(max(index, 0), LANDMARKS - 1)
+    return update._replace(landmarks=update.landmarks[:at] + (landmark,) + update.landmarks[at + 1 :])
 
 
 def chain_path(chain: EchoChain, echoes: int) -> float:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.map.chain_update import (
     ChainEvent,
+    ChainUpdate,
     SideReading,
     chain_event,
     finish_chain,
@@ -115,15 +116,17 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
     at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
     reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
     event = chain_event(local_map.chains[at], reading)
-    if event != ChainEvent.CONTINUES:
-        at_edge = event == ChainEvent.ENDS_AT_EDGE
-        landmarks = finish_chain(local_map.landmarks, local_map.chains[at], reading, at_edge, params)
-        local_map = local_map._replace(landmarks=landmarks)
     chain = next_chain(local_map.chains[at], reading, event)
-    if is_fit_due(chain, reading):
-        found = fit_chain(local_map.landmarks, chain, reading, False, params)
-        chain = found.chain
-        local_map = local_map._replace(landmarks=found.landmarks)
+    fits = is_fit_due(chain, reading)
+    if fits or event != ChainEvent.CONTINUES:
+        update = ChainUpdate(local_map.landmarks, local_map.chains[at])
+        if event != ChainEvent.CONTINUES:
+            update = finish_chain(update, reading, event == ChainEvent.ENDS_AT_EDGE, params)
+        update = update._replace(chain=chain)
+        if fits:
+            update = fit_chain(update, reading, False, params)
+        chain = update.chain
+        local_map = local_map._replace(landmarks=update.landmarks)
     return local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
 
 

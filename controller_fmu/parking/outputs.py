@@ -1,7 +1,7 @@
 """Outputs of the parking system, from what it remembers."""
 
 from controller_fmu.common.driver_selection import MAX_OFFERS
-from controller_fmu.interface import Reason
+from controller_fmu.interface import PlannedPiece, Reason
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.map.landmark import LANDMARKS
@@ -14,7 +14,6 @@ from controller_fmu.parking.planning.planner import PathSegment
 from controller_fmu.parking.signals import (
     MOVE_SEGMENTS,
     DrivenMove,
-    MoveSegment,
     ParkingAlarm,
     ParkingOutput,
     ParkingSignals,
@@ -151,14 +150,14 @@ def _current_move(progress: PathProgress) -> DrivenMove:
         if count == number and at < progress.path.used and progress.path.segments[at].distance * direction > 0.0:
             count = count + 1
     pieces = tuple(
-        _move_segment(progress.path.segments[progress.segment + number]) if number < count else MoveSegment()
+        _move_piece(progress.path.segments[progress.segment + number]) if number < count else PlannedPiece()
         for number in range(MOVE_SEGMENTS)
     )
     return DrivenMove(progress.begin, int(direction), pieces)
 
 
-def _move_segment(segment: PathSegment) -> MoveSegment:
-    return MoveSegment(abs(segment.distance), segment.curvature, segment.curvature)
+def _move_piece(segment: PathSegment) -> PlannedPiece:
+    return PlannedPiece(abs(segment.distance), segment.curvature, segment.curvature)
 
 
 def _slot_signals(slot: SlotCandidate) -> SlotSignals:

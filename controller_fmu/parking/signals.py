@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.common.driver_selection import MAX_OFFERS, DriverSelection
 from controller_fmu.common.external_slot import ExternalSlot
-from controller_fmu.interface import Odometry, Reason
+from controller_fmu.interface import Odometry, PlannedPiece, Reason
 from controller_fmu.parking.chart import ParkingPhase, ParkingState
 from controller_fmu.parking.slots.candidate import SlotType
 from modelkit.signal import Group, Role, Signal
@@ -80,20 +80,12 @@ class SlotSignals(NamedTuple):
     depth: Annotated[float, Signal("m", "behind the neighbours' fronts; 50: unknown", 0.0)] = 0.0
 
 
-class MoveSegment(NamedTuple):
-    """A segment of the move being driven."""
-
-    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
-    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
-    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
-
-
 class DrivenMove(NamedTuple):
     """The path up to the next change of direction."""
 
     start: Annotated[Pose, Group("where the segment in hand begins")] = Pose()
     direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
-    pieces: tuple[MoveSegment, ...] = (MoveSegment(),) * MOVE_SEGMENTS
+    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * MOVE_SEGMENTS
 
 
 class ParkingSignals(NamedTuple):

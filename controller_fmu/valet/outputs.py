@@ -1,12 +1,12 @@
 """What the valet puts out, from what it remembers."""
 
-from controller_fmu.interface import Reason
+from controller_fmu.interface import PlannedPiece, Reason
 from controller_fmu.planning.plan import PATH
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
-from controller_fmu.valet.signals import PIECES, FoundSlot, Move, MovePiece, Planning, ValetOutput, ValetSignals
+from controller_fmu.valet.signals import PIECES, FoundSlot, Move, Planning, ValetOutput, ValetSignals
 from controller_fmu.valet.state import ValetState
 from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
@@ -105,10 +105,12 @@ def _move(state: ValetState) -> Move:
         at = state.piece + number
         if count == number and at < PATH and state.path.pieces[at if at < PATH else 0].way * direction > 0.0:
             count = count + 1
-    pieces = tuple(_piece(state, state.piece + number) if number < count else MovePiece() for number in range(PIECES))
+    pieces = tuple(
+        _piece(state, state.piece + number) if number < count else PlannedPiece() for number in range(PIECES)
+    )
     return Move(state.begin, int(direction), pieces)
 
 
-def _piece(state: ValetState, number: int) -> MovePiece:
+def _piece(state: ValetState, number: int) -> PlannedPiece:
     piece = state.path.pieces[number if number < PATH else 0]
-    return MovePiece(abs(piece.way), piece.k, piece.k)
+    return PlannedPiece(abs(piece.way), piece.k, piece.k)

@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.common.external_slot import ExternalSlot
-from controller_fmu.interface import Odometry, Reason
+from controller_fmu.interface import Odometry, PlannedPiece, Reason
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.phases import ValetPhase
@@ -41,20 +41,12 @@ class Planning(IntEnum):
     TOO_MANY_EDGES = 5
 
 
-class MovePiece(NamedTuple):
-    """A piece of the move being driven."""
-
-    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
-    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
-    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
-
-
 class Move(NamedTuple):
     """The way up to the next change of direction."""
 
     start: Annotated[Pose, Group("where the piece in hand starts")] = Pose()
     direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
-    pieces: tuple[MovePiece, ...] = (MovePiece(),) * PIECES
+    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * PIECES
 
 
 class FoundSlot(NamedTuple):

@@ -149,7 +149,7 @@ def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
 
 
 def finish_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
-    """Return the landmarks with the fit of a chain that has ended."""
+    """Return landmarks and chain with the fit of a chain that has ended, if it has echoes enough."""
     if update.chain.used >= MIN_ECHOES:
         update = fit_chain(update, reading, ends_at_edge, params)
     return update

@@ -55,7 +55,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return what is asked for from where it is written."""
+    """Return the requested name from the module that defines it."""
     home = next((module for module, names in _HOMES.items() if name in names), None)
     if home is None:
         raise AttributeError(f"module 'apa_cosim' has no attribute {name!r}")

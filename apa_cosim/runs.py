@@ -141,8 +141,8 @@ def run(
     """Return a scenario's run.
 
     ``fmus``: ``native``, ``python``, or ``none`` for the models in process; by default native where a C compiler is
-    there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: somebody
-    else's FMU, or a model ``law.py:MODEL``, in the place of ours. Raises ``BadInput``.
+    there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: a
+    third-party FMU, or a model ``law.py:MODEL``, in the place of ours. Raises ``BadInput``.
     """
     given = ImportedFmus(
         {name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path}

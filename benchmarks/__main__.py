@@ -53,7 +53,7 @@ def text_of(measurements: list[Measurement]) -> str:
 
 
 def run_here(name: str) -> int:
-    """Run one benchmark in this process; one whose packages are not installed says so and is skipped."""
+    """Run one benchmark in this process; one whose packages are not installed is skipped with a message."""
     try:
         module = importlib.import_module(f"benchmarks.bench_{name}")
     except ModuleNotFoundError as error:

@@ -39,7 +39,7 @@ from orchestrator.studies.bakeoff.entries import CONTROLLERS, scenario_of
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
 from qp_problems import dense, random_problem
 
-ROUNDS, OFTEN = size((5, 50), (1, 1))
+ROUNDS, REPEATS = size((5, 50), (1, 1))
 PROBLEMS = size(30, 2)
 PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 FUZZY = (PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
@@ -201,7 +201,7 @@ def bench_qp(library: Any) -> None:
 
     def by_c() -> None:
         for now, stages, weights in flat:
-            library.bench_solve(OFTEN, *now, stages.ctypes.data, weights.ctypes.data)
+            library.bench_solve(REPEATS, *now, stages.ctypes.data, weights.ctypes.data)
 
     def by_daqp() -> None:
         for h, f, g, limit in matrices:
@@ -221,10 +221,10 @@ def bench_qp(library: Any) -> None:
             cost = 0.5 * cvxpy.quad_form(x, cvxpy.psd_wrap(h)) + f @ x
             cvxpy.Problem(cvxpy.Minimize(cost), [g @ x <= limit]).solve(solver=cvxpy.OSQP, eps_abs=1e-6, eps_rel=1e-6)
 
-    ways = {"ours, CPython": ours, "DAQP": by_daqp, "OSQP, set-up and solve": by_osqp, "cvxpy + OSQP": by_cvxpy}
+    solvers = {"ours, CPython": ours, "DAQP": by_daqp, "OSQP, set-up and solve": by_osqp, "cvxpy + OSQP": by_cvxpy}
     print(f"\n{'QP of 12 steps [us]':24s}{'time':>10s}")
-    print(f"{'ours, compiled':24s}{micros(by_c, OFTEN * len(problems), 3):10.0f}")
-    for name, work in ways.items():
+    print(f"{'ours, compiled':24s}{micros(by_c, REPEATS * len(problems), 3):10.0f}")
+    for name, work in solvers.items():
         cost = micros(work, len(problems), 3)
         record(f"QP of 12 steps, {name}", cost, "us")
         print(f"{name:24s}{cost:10.0f}")

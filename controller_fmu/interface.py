@@ -1,4 +1,4 @@
-"""What systems share: what they are told, what they tell, the car they think they drive. Knows none of them.
+"""What systems share: inputs, outputs, and their model of the car. Imports none of them.
 
 Each system has types of its own, made of what stands here and of what it alone has; ``controller_fmu.registry`` makes
 the controller of all of them.
@@ -65,7 +65,7 @@ class Reason(IntEnum):
     SLOT_TOO_SHALLOW = 25
     """The search came to its end with slots that end before the car does."""
     SLOT_CONTRADICTED = 26
-    """Something was heard where a slot from outside is said to be."""
+    """An echo came from where an external slot is said to be."""
     SLOT_NOT_SUPPORTED = 27
     """A slot from outside of a kind that this system does not park in: at an angle, or nose first."""
 
@@ -74,7 +74,7 @@ Odometry = Annotated[Pose, Group("rear-axle midpoint estimated by dead reckoning
 
 
 class SystemInput(NamedTuple):
-    """What every system is told by the vehicle."""
+    """What every system reads from the vehicle."""
 
     odometry: Odometry = Pose()
     measured_speed: MeasuredSpeed = 0.0
@@ -83,7 +83,7 @@ class SystemInput(NamedTuple):
 
 
 class ParkingInput(NamedTuple):
-    """What a system that parks is told."""
+    """What a system that parks reads."""
 
     odometry: Odometry = Pose()
     measured_speed: MeasuredSpeed = 0.0
@@ -126,7 +126,7 @@ STATE_OF_THE_CHART = "state of the manoeuvre chart"
 
 
 class RefusedOutput(NamedTuple):
-    """What is told where no system acts."""
+    """The outputs where no system acts."""
 
     prompt: PromptShown = 0
     brake_request: BrakeRequest = False

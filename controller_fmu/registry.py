@@ -118,7 +118,7 @@ else:
     ControllerParams = merge_records(
         "ControllerParams",
         __name__,
-        "The system chosen, the car it thinks it drives, the target and every limit.",
+        "The chosen system, its model of the car, the target and every limit.",
         (Choosing, *(row.params for row in ROWS)),
     )
     ControllerInput = merge_records("ControllerInput", __name__, "From the vehicle.", (row.inputs for row in ROWS))

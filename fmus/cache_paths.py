@@ -45,7 +45,7 @@ def _temporary() -> Path:
     folder = Path(tempfile.gettempdir()) / f"apa-cosim-{user}"
     folder.mkdir(mode=0o700, exist_ok=True)
     if hasattr(os, "getuid") and (folder.stat().st_uid != user or folder.stat().st_mode & 0o022):
-        raise RuntimeError(f"{folder} belongs to somebody else; name a folder with {VARIABLE}")
+        raise RuntimeError(f"{folder} belongs to another user; name a folder with {VARIABLE}")
     return folder
 
 

@@ -19,7 +19,7 @@ from {module} import main
 del sys.path[0]
 main()
 """
-"""What a process of ours runs: nothing of this project stays in its way."""
+"""What a process of ours runs: no module of this project shadows its own."""
 LIVING: set["subprocess.Popen[Any]"] = set()
 PYTHON = str(Path(sys.executable).absolute()) if sys.executable else ""
 """The interpreter that runs this, from any folder: with a relative entry in ``PATH`` its own name is relative."""

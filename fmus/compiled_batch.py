@@ -1,7 +1,7 @@
 """Whole runs as machine code: many at once, without Python in between and without the interpreter's lock.
 
-The models' code is the native FMU's, from the same C; the exchange is ``native/c/batch.c``, told by tables what is
-connected to what. The tables are made from the types: an output and an input of the same name are connected. Only
+The models' code is the native FMU's, from the same C; the exchange is ``native/c/batch.c``, which follows
+tables of connections. The tables are made from the types: an output and an input of the same name are connected. Only
 :class:`StopCondition` and :class:`RecordedSignal` name signals.
 """
 

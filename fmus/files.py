@@ -247,7 +247,7 @@ def _remove_forsaken(parent: Path, dot: str = "") -> None:
 def hold(folder: Path) -> int:
     """Return a handle with the lock on ``folder``, which dies with the process.
 
-    Raises ``BlockingIOError`` if somebody has it. Where folders cannot be locked, nobody has.
+    Raises ``BlockingIOError`` if another process holds it. Where folders cannot be locked, none does.
     """
     if os.name != "posix":
         return os.open(os.devnull, os.O_RDONLY)

@@ -20,7 +20,7 @@ from fmus.files import write_whole
 
 REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 VENDORED = re.compile(r"(?:^|/)third_party/([^/]+)/.*\.js$")
-"""A script of somebody else's inside of a wheel."""
+"""A third-party script inside of a wheel."""
 VENDORED_VERSION = re.compile(rb"\(v?(\d+(?:\.\d+)+)\)")
 Component = dict[str, Any]
 

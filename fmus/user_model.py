@@ -1,4 +1,4 @@
-"""A model of somebody's own: read from a file or a package folder, and what is wrong with it in one line each."""
+"""A user's model: read from a file or a package folder, and what is wrong with it in one line each."""
 
 import importlib.util
 import sys

@@ -1,7 +1,7 @@
 """The car: its outline, axles, steering and distance sensors. What drives and what controls each have one of these.
 
 The same number in both is one fact: a scenario's ``car`` fills ``car.*`` of the vehicle and of the controller.
-A controller that is told another car than it drives is a study of what it then does.
+A controller whose model is of another car than it drives is a study of what it then does.
 """
 
 import math

@@ -74,8 +74,8 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         state = _go(state, inputs, attainable_speed(selector, target), angles, params, h)
     odometry = OdometryState(state.pose)
     if not params.odometry.ideal:
-        way = 0.5 * h * (rolled_speed + state.rolled_speed)
-        odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.car.wheelbase, params.odometry)
+        arc = 0.5 * h * (rolled_speed + state.rolled_speed)
+        odometry = reckon(state.odometry, arc, 0.5 * (angles[0] + angles[1]), params.car.wheelbase, params.odometry)
     driven = inputs.speed_control_active or inputs.force_control_active
     return state._replace(
         time_ns=next_ns,

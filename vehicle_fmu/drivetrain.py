@@ -62,7 +62,7 @@ def target_gear(gear: int, target: float) -> int:
 
 
 def shift(selector: Selector, wanted: int, speed: float, shift_time: float, step_ns: int) -> Selector:
-    """Return the selector ``step_ns`` later when the gear ``wanted`` is asked for at ``speed`` [m/s].
+    """Return the selector ``step_ns`` later when the gear ``wanted`` is requested at ``speed`` [m/s].
 
     With a shift time the car must stand, and N is engaged meanwhile; without, the gear follows at once.
     """

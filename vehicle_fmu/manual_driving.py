@@ -33,7 +33,7 @@ def lever_gear(manual: ManualInput, gear: int, speed: float) -> int:
 
 
 def tread(pedals: Pedals, manual: ManualInput, car: Rolling, p: DriveParams, h: float) -> Pedals:
-    """Return the pedals ``h`` [s] later under a person's feet; the aim is the car's speed, for who comes after."""
+    """Return the pedals ``h`` [s] later under a person's feet; the aim is the car's speed, for the next driver."""
     engaged = car.gear == Gear.DRIVE or car.gear == Gear.REVERSE
     push = along(car.gear) * clamp(manual.accelerator, 0.0, 1.0) * p.drive_force_limit if engaged else 0.0
     brake = clamp(manual.brake, 0.0, 1.0) * p.brake_force_limit

@@ -33,15 +33,15 @@ def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     """Return the car at rest at its start pose, wheel straight, in park."""
     fault = VehicleFault.NONE
     start = params.start
-    heard = UltrasonicState()
+    ultrasonic = UltrasonicState()
     gap = 0.0
     if is_usable(params):
-        heard = first_readings(start, params.scene, params.car.ultrasonic, params.ultrasonic)
+        ultrasonic = first_readings(start, params.scene, params.car.ultrasonic, params.ultrasonic)
         gap = _clearance(start, params, 0)
     else:
         fault = VehicleFault.BAD_PARAMETER
         start = Pose()
-    state = VehicleState(initial_car(start, fault == VehicleFault.NONE, params), heard, fault)
+    state = VehicleState(initial_car(start, fault == VehicleFault.NONE, params), ultrasonic, fault)
     return state, _outputs(state, gap, False, params)
 
 
@@ -53,7 +53,7 @@ def step(
     if fault == VehicleFault.NONE and not _is_finite_input(inputs):
         fault = VehicleFault.BAD_INPUT
     car = state.car
-    heard = state.ultrasonic
+    ultrasonic = state.ultrasonic
     gap = 0.0
     if fault != VehicleFault.BAD_PARAMETER:
         if dt_ns > 0:
@@ -62,9 +62,11 @@ def step(
             for number in range(1, count + 1):
                 car = step_car(car, inputs, fault != VehicleFault.NONE, params, start_ns + dt_ns * number // count)
             if is_due(start_ns, car.time_ns, params.car.ultrasonic.cycle):
-                heard = measure(heard, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns)
+                ultrasonic = measure(
+                    ultrasonic, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns
+                )
         gap = _clearance(car.pose, params, car.time_ns)
-    state = VehicleState(car, heard, fault)
+    state = VehicleState(car, ultrasonic, fault)
     return state, _outputs(state, gap, inputs.manual.active and inputs.manual.confirm, params)
 
 

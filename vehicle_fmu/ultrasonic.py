@@ -1,8 +1,8 @@
-"""Twelve ultrasonic sensors: distance to the nearest thing inside each cone.
+"""Twelve ultrasonic sensors: distance to the nearest surface inside each cone.
 
 Numbers: 1 to 4 front, from left to right; 5 to 8 rear, from left to right; 9 front left side,
 10 rear left side; 11 front right side, 12 rear right side. A reading of ``max_range`` means that
-nothing was heard; nothing reads less than ``min_range``. All sensors measure together, every
+there was no echo; nothing reads less than ``min_range``. All sensors measure together, every
 ``cycle``: the exact distance, plus noise, rounded to the resolution, or lost. With its seed, a
 run repeats to the bit.
 """
@@ -79,10 +79,10 @@ def measure(
 ) -> UltrasonicState:
     """Return new readings [m] of all sensors of a car at ``pose``."""
     random = state.random
-    ear = RangeSensor(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
+    sensor = RangeSensor(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
     readings = state.readings
     for distance in range_measurements(pose, scene, sensors, params.kerb_height, time_ns):
-        random, reading = _reading(random, distance, ear)
+        random, reading = _reading(random, distance, sensor)
         readings = readings[1:] + (reading,)
     return UltrasonicState(readings, random)
 
@@ -143,16 +143,16 @@ def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, side: 
     return min(nearest, cone_gap(cone, seen.box, seen.corners))
 
 
-def _reading(random: int, distance: float, ear: RangeSensor) -> tuple[int, float]:
-    """Return the generator and a reading; with neither noise nor dropout nothing is drawn by lot."""
+def _reading(random: int, distance: float, sensor: RangeSensor) -> tuple[int, float]:
+    """Return the generator and a reading; with neither noise nor dropout no random number is taken."""
     chance = 1.0
     error = 0.0
-    if ear.noise > 0.0 or ear.dropout > 0.0:
+    if sensor.noise > 0.0 or sensor.dropout > 0.0:
         random, chance = uniform(random)
         random, error = normal(random)
-    if chance < ear.dropout or distance >= ear.max_range:
-        return random, ear.max_range
-    reading = distance + ear.noise * error
-    if ear.resolution > 0.0:
-        reading = ear.resolution * math.floor(reading / ear.resolution + 0.5)
-    return random, clamp(reading, ear.min_range, ear.max_range)
+    if chance < sensor.dropout or distance >= sensor.max_range:
+        return random, sensor.max_range
+    reading = distance + sensor.noise * error
+    if sensor.resolution > 0.0:
+        reading = sensor.resolution * math.floor(reading / sensor.resolution + 0.5)
+    return random, clamp(reading, sensor.min_range, sensor.max_range)

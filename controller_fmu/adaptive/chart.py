@@ -1,4 +1,4 @@
-"""The chart of driver-adaptive parking as a table: stand, plan, set the wheel, drive one way, stop, until in place."""
+"""The chart of driver-adaptive parking as a table: stand, plan, set the wheel, drive to a stop, until in place."""
 
 from enum import IntEnum
 

@@ -47,7 +47,7 @@ class Driver(NamedTuple):
     obeys: bool = True
     """He has not yet driven faster than advised."""
     slows: bool = False
-    """He has been seen to slow down when told."""
+    """The driver has been seen to slow down when advised."""
     stops: int = 0
     """Stops learnt from."""
     speed: float = 0.0
@@ -70,14 +70,14 @@ class Driver(NamedTuple):
 
 
 def update_prompt(driver: Driver, speed: float) -> Driver:
-    """Return the driver told another thing than before, at ``speed`` [m/s]."""
+    """Return the driver as another advice than before is displayed, at ``speed`` [m/s]."""
     return driver._replace(
         asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_distance=0.0, early_ns=0, late_ns=0, stood_ns=0
     )
 
 
 def on_stop_prompt(driver: Driver, speed: float, advised: float, believed: BeliefParams) -> Driver:
-    """Return the driver told to stop at ``speed`` [m/s]: who has come down with the advice on the way slows down."""
+    """Return the driver as a stop is requested at ``speed`` [m/s]: slower since the advice: it is followed."""
     v = abs(speed)
     slows = driver.slows or (
         advised < SLOW_DOWN_SPEED_RATIO * driver.fastest and v <= NONCOMPLIANCE_SPEED_RATIO * advised
@@ -134,7 +134,7 @@ def update_while_stopping(driver: Driver, speed: float, standstill: float, dt_ns
 
 
 def has_stopped(driver: Driver, believed: BeliefParams) -> bool:
-    """Return whether he stands because he was told to; one who crawls may stand for a moment before he acts on it."""
+    """Return whether he stands because a stop was requested; a crawling driver may stand briefly before he reacts."""
     stood = driver.stood_ns * 1e-9
     late = max(driver.set_out, reaction_of(driver, believed))
     return stood >= STANDSTILL_SPEED and (driver.asked_ns * 1e-9 >= late or stood >= LONG_STOOD)
@@ -169,7 +169,7 @@ def deceleration_of(driver: Driver, believed: BeliefParams) -> float:
 
 
 def stopping_distance(driver: Driver, believed: BeliefParams) -> float:
-    """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does.
+    """Return the way [m] he will drive on if a stop is requested now, his speed changing as it does.
 
     Who drives faster than advised is taken to come back to the speed he settles at: he only swings.
     """
@@ -182,7 +182,7 @@ def stopping_distance(driver: Driver, believed: BeliefParams) -> float:
 
 
 def shortest_drive(driver: Driver, believed: BeliefParams) -> float:
-    """Return the shortest way [m] he can be had to drive: he is told to stop as soon as he has set out."""
+    """Return the shortest way [m] he can be made to drive: a stop is requested as soon as he has set out."""
     v = driver.cruise
     return driver.stretch * v * (reaction_of(driver, believed) + 0.5 * v / deceleration_of(driver, believed))
 

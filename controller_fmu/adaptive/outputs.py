@@ -44,7 +44,7 @@ def piece_plan(piece: Piece, mirror: float) -> PlannedPiece:
 
 
 def prompt_of(state: AdaptiveState, params: AdaptiveSystemParams) -> int:
-    """Return the prompt: to slow down where the advice asks for it and the car is on its way."""
+    """Return the prompt: to slow down where the advice asks for it and the car is moving."""
     if state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.TAKEOVER):
         return Prompt.NONE
     direction = direction_of(state.phase)

@@ -1,7 +1,7 @@
-"""Which way to drive from where the car stands: into the slot in reverse, onto its line ahead, or to a better start.
+"""Where to drive from where the car stands: into the slot in reverse, onto its line ahead, or to a better start.
 
 A route is driven as far as its curvature is continuous. At a jump the driver has to stop and the wheel turns at
-standstill, after which all is planned anew. So a plan is a first way, and the proof that another leads on from its end.
+standstill, after which all is planned again. So a plan is a first path, and the proof that another begins at its end.
 """
 
 import math
@@ -55,7 +55,7 @@ class Demand(NamedTuple):
     speed: float
     """The driver's [m/s], with a reserve."""
     willing: bool
-    """He drives slower if told."""
+    """The driver slows down when advised."""
     rest: float
     """Straight way before the end [m]."""
     share: float
@@ -191,22 +191,22 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: S
         first = -1.0
         last = -1.0
         for number in range(MAX_STOP_CANDIDATES):
-            way = STOP_SPACING * number
-            at = point_at(arc(start, -1, way, -1.0 / radius), way).pose
+            s = STOP_SPACING * number
+            at = point_at(arc(start, -1, s, -1.0 / radius), s).pose
             inwards = arc_in(at, demand.speed, wheel, demand.rest)
             free = inwards.direction != 0
             if free:
                 found = mirror_route(inwards, mirror, Pose(at.x, mirror * at.y, mirror * at.heading), -1)
                 free = room_along(found, room, room.margin) >= room.margin
             if free:
-                first = way if first < 0.0 else first
-                last = way
+                first = s if first < 0.0 else first
+                last = s
             elif first >= 0.0:
                 break
         if last - first >= MIN_STOP_WINDOW and last > 0.0:
-            way = first + demand.share * (last - first)
-            if way >= demand.shortest:
-                return arc(pose, -1, way, -mirror / radius)
+            s = first + demand.share * (last - first)
+            if s >= demand.shortest:
+                return arc(pose, -1, s, -mirror / radius)
     return NO_ROUTE
 
 
@@ -231,29 +231,29 @@ def plan_ahead(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room, mo
     """Return the shortest way ahead to where the way in reverse can begin; ``moving``: and needs no stop."""
     enough = _enough(pose, room)
     for more in AHEAD:
-        way = more + demand.shortest
+        s = more + demand.shortest
         for turn in TURNS:
-            route = arc(pose, 1, way, turn / wheel.radius)
+            route = arc(pose, 1, s, turn / wheel.radius)
             if room_along(route, room, enough) >= enough:
-                end = point_at(route, way).pose
+                end = point_at(route, s).pose
                 back = _moving(end, demand, wheel, room) if moving else plan_halting(end, demand, wheel, room)
                 if back.route.direction != 0:
                     return Plan(route, ANY_SPEED)
     return NO_PLAN
 
 
-def _is_aligned(pose: Pose, way: float) -> bool:
-    """Return whether tracking alone puts the car right on the slot's line over ``way`` [m].
+def _is_aligned(pose: Pose, s: float) -> bool:
+    """Return whether tracking alone puts the car right on the slot's line over ``s`` [m].
 
     With both gains 1 and 2 the offset obeys y'' = -y - 2 y': y = (y0 + (y0 + y0') s) exp(-s).
     """
     slope = -math.tan(pose.heading) if pose.x > 0.0 else math.tan(pose.heading)
     if abs(pose.y) > MAX_LINE_OFFSET or abs(slope) > MAX_LINE_OFFSET:
         return False
-    decay = math.exp(-way)
+    decay = math.exp(-s)
     both = pose.y + slope
-    y = (pose.y + both * way) * decay
-    return abs(y) <= ALIGNED_OFFSET and abs(slope - both * way) * decay <= ALIGNED_HEADING
+    y = (pose.y + both * s) * decay
+    return abs(y) <= ALIGNED_OFFSET and abs(slope - both * s) * decay <= ALIGNED_HEADING
 
 
 def _slower(route: Route, demand: Demand, wheel: SteeringLimits, room: Room) -> Route:

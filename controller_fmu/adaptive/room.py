@@ -66,9 +66,9 @@ def room_along(route: Route, room: Room, enough: float) -> float:
         if piece.length > 0.0:
             steps = int(piece.length / LOOKED_AT) + 1
             for number in range(1, steps + 1):
-                way = piece.length * number / steps
+                s = piece.length * number / steps
                 k = piece.k0 + (piece.k1 - piece.k0) * number / steps
-                gap = room_at(advance(pose, direction, way, piece.k0, k), room)
+                gap = room_at(advance(pose, direction, s, piece.k0, k), room)
                 least = min(least, gap)
                 if least < enough:
                     return least

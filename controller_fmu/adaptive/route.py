@@ -1,4 +1,4 @@
-"""A route: one way driven in one direction, as pieces whose curvature is linear in the way (line, arc, clothoid)."""
+"""A route: a path in one direction, of pieces whose curvature is linear in arc length (line, arc, clothoid)."""
 
 import math
 from typing import NamedTuple
@@ -39,7 +39,7 @@ class RoutePoint(NamedTuple):
 class Foot(NamedTuple):
     """Where the car is along its route, and how far off it."""
 
-    way: float = 0.0
+    s: float = 0.0
     """Driven of the route [m]."""
     reference: Pose = Pose()
     lateral_error: float = 0.0
@@ -69,13 +69,13 @@ def drivable(route: Route) -> float:
     return along
 
 
-def point_at(route: Route, way: float) -> RoutePoint:
-    """Return the point ``way`` [m] along a route; before its start straight, past its end as curved as there."""
+def point_at(route: Route, s: float) -> RoutePoint:
+    """Return the point ``s`` [m] along a route; before its start straight, past its end as curved as there."""
     direction = float(route.direction)
     pose = route.start
-    if way < 0.0:
-        return RoutePoint(advance(pose, direction, way, 0.0, 0.0), curvature_at(route, 0.0))
-    rest = way
+    if s < 0.0:
+        return RoutePoint(advance(pose, direction, s, 0.0, 0.0), curvature_at(route, 0.0))
+    rest = s
     last = 0.0
     for piece in route.pieces:
         if piece.length > 0.0:
@@ -88,9 +88,9 @@ def point_at(route: Route, way: float) -> RoutePoint:
     return RoutePoint(advance(pose, direction, rest, last, last), last)
 
 
-def curvature_at(route: Route, way: float) -> float:
-    """Return the curvature [1/m] ``way`` [m] along a route, held to its ends."""
-    rest = way
+def curvature_at(route: Route, s: float) -> float:
+    """Return the curvature [1/m] ``s`` [m] along a route, held to its ends."""
+    rest = s
     last = 0.0
     for piece in route.pieces:
         if piece.length > 0.0:
@@ -101,14 +101,14 @@ def curvature_at(route: Route, way: float) -> float:
     return last
 
 
-def foot_on(route: Route, way: float, pose: Pose) -> Foot:
-    """Return the foot of a car at ``pose`` (slot's frame) that was at ``way`` [m] before."""
+def foot_on(route: Route, s: float, pose: Pose) -> Foot:
+    """Return the foot of a car at ``pose`` (slot's frame) that was at ``s`` [m] before."""
     direction = float(route.direction)
-    at = point_at(route, way).pose
-    way += direction * ((pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading))
-    at = point_at(route, way).pose
+    at = point_at(route, s).pose
+    s += direction * ((pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading))
+    at = point_at(route, s).pose
     e = (pose.y - at.y) * math.cos(at.heading) - (pose.x - at.x) * math.sin(at.heading)
-    return Foot(way, at, e, wrap_angle(pose.heading - at.heading))
+    return Foot(s, at, e, wrap_angle(pose.heading - at.heading))
 
 
 def mirror_route(route: Route, mirror: float, start: Pose, direction: int) -> Route:

@@ -68,7 +68,7 @@ class AdaptiveState(NamedTuple):
     driver: Driver = Driver()
     request: float = 0.0
     moving: bool = False
-    """The car is on its way in the direction asked for."""
+    """The car moves in the requested direction."""
     advice: float = 0.0
     takeover: bool = False
     monitor: MonitorState = MonitorState()
@@ -165,7 +165,7 @@ def wheel_of(steering: Steering, params: AdaptiveSystemParams) -> SteeringLimits
 
 def _update_tracking(state: AdaptiveState, pose: Pose) -> AdaptiveState:
     """Return the system with the foot of the car; a driver too fast for the route stays on its first arc to a stop."""
-    foot = foot_on(state.plan.route, state.foot.way, pose)
+    foot = foot_on(state.plan.route, state.foot.s, pose)
     slower = state.plan.slower
     if slower.direction == 0 or state.phase == AdaptivePhase.STOP:
         return state._replace(foot=foot)
@@ -175,10 +175,10 @@ def _update_tracking(state: AdaptiveState, pose: Pose) -> AdaptiveState:
         leaves += pieces[1].length + pieces[2].length
     too_fast = state.driver.speed > TOO_FAST * state.plan.speed + TOO_FAST_BY or not state.driver.obeys
     end = drivable(slower)
-    soon = foot.way >= leaves or end - foot.way <= state.driver.speed * 2.0
+    soon = foot.s >= leaves or end - foot.s <= state.driver.speed * 2.0
     if too_fast and soon:
         return state._replace(foot=foot, plan=Plan(slower, ANY_SPEED), end=end)
-    if foot.way >= leaves:
+    if foot.s >= leaves:
         return state._replace(foot=foot, plan=Plan(state.plan.route, state.plan.speed))
     return state._replace(foot=foot)
 
@@ -204,7 +204,7 @@ def _guards(
     off = abs(state.foot.lateral_error) > limit.leave_lateral + abs(begun.lateral_error) or abs(
         state.foot.heading_error
     ) > limit.leave_heading + abs(begun.heading_error)
-    left = state.end - state.foot.way
+    left = state.end - state.foot.s
     must = off or left <= stopping_distance(state.driver, params.adaptive.belief)
     return (
         bit(Guard.TAKEOVER, inputs.driver_takeover)
@@ -248,8 +248,8 @@ def _request(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
     route = state.plan.route
     path = params.adaptive.path
     late = delay_of(state.monitor.wheel.steering) + LOOP_DEAD_TIME
-    soon = max(STANDSTILL_LOOKAHEAD, state.foot.way + late * state.driver.speed)
-    curvature = curvature_at(route, min(soon, max(state.end, state.foot.way)))
+    soon = max(STANDSTILL_LOOKAHEAD, state.foot.s + late * state.driver.speed)
+    curvature = curvature_at(route, min(soon, max(state.end, state.foot.s)))
     turned = clamp(state.foot.heading_error, -MAX_TRACKING_HEADING, MAX_TRACKING_HEADING)
     c = math.cos(turned)
     feedback = path.k1 * state.foot.lateral_error + route.direction * path.k2 * math.tan(turned)
@@ -263,7 +263,7 @@ def _advice(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
     fast = min(believed.speed_limit, state.plan.speed)
     if state.phase == AdaptivePhase.STANDBY:
         return believed.speed_limit
-    left = state.end - state.foot.way - state.driver.speed * reaction_of(state.driver, believed)
+    left = state.end - state.foot.s - state.driver.speed * reaction_of(state.driver, believed)
     creep = believed.creep_speed
     near = math.sqrt(creep * creep + 2.0 * believed.gentle * max(0.0, left))
     return min(fast, near)

@@ -1,4 +1,4 @@
-"""Where a piece of path leads: curvature linear in the way driven (line, arc, clothoid).
+"""Where a piece of path leads: curvature linear in arc length (line, arc, clothoid).
 
     heading(s) = h0 + d (k0 s + (k1 - k0) s^2 / (2 l))     x' = d cos heading    y' = d sin heading
 

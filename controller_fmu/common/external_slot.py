@@ -10,9 +10,9 @@ from modelkit.signal import Signal
 MIN_SLOT_DEPTH = 0.1
 """Corners C and D tell a depth if they lie so far [m] behind A and B."""
 UNKNOWN_DEPTH = 50.0
-"""Depth [m] of a slot of which none is told."""
+"""Depth [m] of a slot of which none is given."""
 WELL_IN = 0.25
-"""What is heard so far [m] inside a slot contradicts it."""
+"""An echo so far [m] inside a slot contradicts it."""
 AT_THE_ROAD = 0.15
 """Slots begin so far [m] before their corners A and B."""
 MIN_CONTRADICTING_ECHOES = 2
@@ -33,7 +33,7 @@ class SlotKind(IntEnum):
 
 
 class ExternalSlot(NamedTuple):
-    """A slot as somebody outside sees it: A and B where it opens to the road, C behind B, D behind A."""
+    """A slot as an external source reports it: A and B where it opens to the road, C behind B, D behind A."""
 
     kind: Annotated[int, Signal("1", "slot type; none: no external slot", states=SlotKind)] = SlotKind.NONE
     ax: Annotated[float, Signal("m", "x of corner A, at the road")] = 0.0
@@ -48,7 +48,7 @@ class ExternalSlot(NamedTuple):
 
 
 def depth_of(reported: ExternalSlot) -> float:
-    """Return how deep [m] a slot is, ``UNKNOWN_DEPTH`` if that is not told."""
+    """Return how deep [m] a slot is, ``UNKNOWN_DEPTH`` if that is not given."""
     c = math.cos(reported.heading)
     s = math.sin(reported.heading)
     depth = 0.5 * (
@@ -59,7 +59,7 @@ def depth_of(reported: ExternalSlot) -> float:
 
 
 def is_usable_slot(reported: ExternalSlot) -> bool:
-    """Return whether no slot is told, or one whose numbers are finite."""
+    """Return whether no slot is given, or one whose numbers are finite."""
     corners = (
         reported.ax + reported.ay + reported.bx + reported.by + reported.cx + reported.cy + reported.dx + reported.dy
     )

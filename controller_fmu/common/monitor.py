@@ -74,10 +74,10 @@ def watch(
 
 
 def time_counted(dt_ns: int, speed: float, standstill: float, begun: bool = True) -> int:
-    """Return what of a sample counts against the longest duration [ns]: a car that creeps is counted by its way.
+    """Return what of a sample counts against the longest duration [ns]: a car that creeps counts by distance.
 
     So a slow driver whose car moves has as far to go as one at ``SLOW_DRIVING_SPEED``. In standby (``begun`` false) no
-    way leads to the slot: a car that creeps instead of standing is waited for no longer than one that stands.
+    path leads to the slot: a car that creeps instead of standing is waited for no longer than one that stands.
     """
     if begun and standstill < abs(speed) < SLOW_DRIVING_SPEED:
         return math.floor(dt_ns * abs(speed) / SLOW_DRIVING_SPEED)
@@ -95,11 +95,11 @@ def clock_before(obstacle: bool, clock: int, still: bool, dt_ns: int) -> int:
 
 
 def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
-    """Return whether the pose has gone less than a tenth of the way that a car at ``speed`` [m/s] goes meanwhile."""
+    """Return whether the pose has moved by less than a tenth of ``speed`` [m/s] times the sample."""
     dx = pose.x - before.x
     dy = pose.y - before.y
-    way = speed * (dt_ns * 1e-9)
-    return dx * dx + dy * dy < 0.01 * way * way and abs(speed) > SLOWEST_SEEN
+    distance = speed * (dt_ns * 1e-9)
+    return dx * dx + dy * dy < 0.01 * distance * distance and abs(speed) > SLOWEST_SEEN
 
 
 def reason_to_fail(

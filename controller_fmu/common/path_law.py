@@ -7,8 +7,8 @@ path and h_e its heading against it
 
     phi = atan( L cos^3(h_e) [ k_r - k1 e - direction k2 tan(h_e) ] )
 
-Driving forward the way runs with x, not against it: e' = direction tan(h_e) over the way, hence the
-factor in the k2 term; e'' = k - k_r in both directions. So e'' = -k1 e - k2 e' either way.
+Driving forward, arc length runs with x, not against it: e' = direction tan(h_e) over arc length, hence the
+factor in the k2 term; e'' = k - k_r in both directions. So e'' = -k1 e - k2 e' in both.
 """
 
 import math

@@ -10,7 +10,7 @@ LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 """The front ones of the flanks, by which slots are found."""
 MAX_SAMPLE_LATENCY = 0.01
-"""So long [s] new readings may be under way."""
+"""Longest latency [s] of a new reading."""
 VALID_RANGE_FRACTION = 0.99
 """A reading of more than this share of the range tells nothing."""
 
@@ -21,19 +21,19 @@ def is_new_sample(clock_ns: int, dt_ns: int, cycle: float) -> bool:
 
 
 class RangeSample(NamedTuple):
-    """What sensors told last, and whether they tell something new now."""
+    """The last readings of the sensors, and whether some are new now."""
 
     readings: tuple[float, ...] = (0.0,) * 12
-    """The last that were listened to [m]."""
+    """The last that were processed [m]."""
     waited_ns: int = 0
-    """Since they should have told something new [ns]; 0: they should not yet."""
+    """Time since new readings were due [ns]; 0: none are due yet."""
     fresh: bool = False
 
 
 def update_sample(
     before: RangeSample, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float
 ) -> RangeSample:
-    """Return what is heard in a sample of ``dt_ns``: new readings may come later than they are measured.
+    """Return the readings of a sample of ``dt_ns``: new ones may come later than they are measured.
 
     Where data is exchanged seldom, a sample arrives up to ``MAX_SAMPLE_LATENCY`` [s] after its ``cycle`` [s]: until
     then the readings are the last ones still. Readings that are the same after that are new ones too.

@@ -1,7 +1,7 @@
 """Learns the steering from what it does, and tells a wheel that fails from one that is only slow.
 
-A wheel that is off its request must come nearer. It may be late (dead time), slow (rate) or lazy
-(lag), and it may go on towards what was asked for a moment ago; it may not stand still or go away.
+A wheel that is off its request must come nearer. It may be late (dead time), slow (rate) or filtered
+(lag), and it may go on towards an earlier request; it may not stand still or go away.
 So no number of the steering has to be known to find a fault.
 
 What is learnt: the dead time, from a jump of the request at rest to the first movement; the rate,
@@ -16,7 +16,7 @@ from modelkit.maths import clamp, sign
 MIN_PROGRESS_ANGLE = 0.05
 PROGRESS_FRACTION = 0.15
 PROGRESS_TIME = 0.02
-"""Coming nearer means: by this share of the way, at most as far as the known rate goes in this time [s], but by
+"""Coming nearer means: by this share of the angle, at most as far as the known rate goes in this time [s], but by
 ``MIN_PROGRESS_ANGLE`` [rad] at least."""
 REQUEST_FILTER_TIME = 0.15
 """Time constant [s] of what was asked for a moment ago."""
@@ -30,7 +30,7 @@ USUAL_DEAD_TIME = 0.1
 FIRST_RESPONSE_TIME = 0.2
 FIRST_RESPONSE_ANGLE = 0.01
 """A steering that has not yet been seen to follow, and has begun to by so much [rad], may take this much [s] longer to
-come nearer: how lazy or slow it is nobody knows yet."""
+come nearer: its lag and rate are unknown yet."""
 WINDOW_NS = 100_000_000
 STEADY_RATE_TOLERANCE = 0.05
 """Two windows are even, and a rate is as believed, if they differ by less than this share."""
@@ -70,7 +70,7 @@ class SteeringMonitorState(NamedTuple):
     off_ns: int = 0
     """The wheel is off its request and has not come nearer for so long."""
     away_ns: int = 0
-    """Of this, time in which it went the other way."""
+    """Of this, time in which it went away."""
     anchor: float = 0.0
     """Angle [rad] from which coming nearer counts."""
     side: float = 0.0

@@ -1,4 +1,4 @@
-"""What the driver is told: the prompt of each state, and the speed advised ahead of trouble.
+"""What is displayed to the driver: the prompt of each state, and the speed advised ahead of trouble.
 
 A wheel that has to swing to the path's curvature, dk away, does so late by D and for T = |d phi| / rate,
 while the car drives on at v. The steering error holds for v D and then falls linearly over v T, which
@@ -84,14 +84,14 @@ def stopping_distance(speed: float, params: GuoPrompts) -> float:
 
 
 def prompt_of(phase: int, moving: bool, advice: float, params: GuoPrompts) -> int:
-    """Return the prompt for ``phase``: to slow down where the advice asks for it and the car is on its way."""
+    """Return the prompt for ``phase``: to slow down where the advice asks for it and the car is moving."""
     if moving and advice < params.speed_limit:
         return Prompt.SLOW_DOWN
     return PROMPT_OF_PHASE[phase]
 
 
 def is_moving(before: bool, speed: float, direction: int, standstill: float) -> bool:
-    """Return whether the car is on its way in ``direction``; one that has set out is until it stands."""
+    """Return whether the car moves in ``direction``; one that has set out does until it stands."""
     along = direction * speed
     return along > MOVING_SPEED or (before and along > standstill)
 

@@ -49,7 +49,7 @@ class GuoState(NamedTuple):
     tracking: Tracking = Tracking()
     request: float = 0.0
     moving: bool = False
-    """The car is on its way in the direction asked for."""
+    """The car moves in the requested direction."""
     advice: float = 0.0
     """Speed advised [m/s]; it holds while the driver is asked to stop."""
     swing: float = 0.0
@@ -172,21 +172,21 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
 def _advice(
     state: GuoState, phase: int, now: Sample, tracking: Tracking, swing: float, params: GuoSystemParams
 ) -> float:
-    """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
+    """Return the speed advised [m/s]; while a stop is requested it may fall, as on the path there, but not rise."""
     if phase == GuoPhase.STANDBY:
         return params.guo2015.prompting.speed_limit
     driving = DIRECTION_OF_PHASE[phase] != 0
     if not driving and phase != GuoPhase.STOP:
         return state.advice
-    way = phase if driving else state.driven
+    last_phase = phase if driving else state.driven
     speed = now.inputs.measured_speed
     advice = swing
-    if way == GuoPhase.PATH_TRACKING:
+    if last_phase == GuoPhase.PATH_TRACKING:
         path = now.planned.path
         reference = reference_at(path, now.pose.x, tracking.piece)
         advice = min(path_speed(path, reference, speed, now.monitor.wheel.steering, params), swing)
     else:
-        left = -DIRECTION_OF_PHASE[way] * tracking.ahead
+        left = -DIRECTION_OF_PHASE[last_phase] * tracking.ahead
         advice = min(point_speed(left, speed, params.guo2015.prompting), swing)
     return advice if driving else min(state.advice, advice)
 

@@ -19,13 +19,13 @@ class Situation(NamedTuple):
     """1 forward, -1 in reverse."""
     found: Errors
     integral: float
-    """Of the lateral error over the way driven [m2]."""
+    """Of the lateral error over the travelled distance [m2]."""
 
 
 def curvature(mode: int, now: Situation, arc: float, lock: float, gain: HsicGains) -> float:
     """Return the curvature [1/m] asked for, left positive, held to the car's ``lock``.
 
-    With s the way driven, y' = d theta and theta' = d kappa (d = +1 forward, -1 in reverse), so
+    With s the travelled distance, y' = d theta and theta' = d kappa (d = +1 forward, -1 in reverse), so
     kappa = -kp y - kd y' gives y'' + kd y' + kp y = 0 in either direction. Bang-bang is the same
     switching line with a steep slope. Extremum hold keeps the planned ``arc``: to the right while
     turning in, to the left while counter-steering (in reverse). On the way to the ready point the lateral

@@ -75,7 +75,7 @@ def _arc_length(state: PreviewState, forward: float, centre: Pose, params: Previ
 
 
 def _sequence(held: Sequence, kappa1: float, kappa2: float, speed: float, params: PreviewParams, dt: float) -> Sequence:
-    """Return the distances and set speed for the next sample, by the paper's sequence or the conventional way."""
+    """Return the distances and set speed for the next sample, by the paper's sequence or the conventional one."""
     if params.method == Method.SINGLE:
         l1 = straight_distance(speed, params)
         return Sequence(PreviewStage.STRAIGHT, l1, l1 + params.near_gap, params.set_speed, 0.0, 0.0)

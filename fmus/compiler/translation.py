@@ -1,4 +1,4 @@
-"""From a model to the text of its header and its C file, or to all that stands in the way."""
+"""From a model to the text of its header and its C file, or to all reasons why there is none."""
 
 import typing
 from contextlib import AbstractContextManager

@@ -77,12 +77,12 @@ def find_dependencies(model: Model) -> Found:
     deciding = {
         parameter
         for parameter, outputs in acting.items()
-        if any(_thing(item.name) in outputs for item in variables(model.outputs) if item.signal.states)
+        if any(_whole_array(item.name) in outputs for item in variables(model.outputs) if item.signal.states)
     }
     sizes = Counter(map(_group, acting))
     found: Found = {}
     for item in variables(model.outputs):
-        causes = {parameter for parameter, outputs in acting.items() if _thing(item.name) in outputs}
+        causes = {parameter for parameter, outputs in acting.items() if _whole_array(item.name) in outputs}
         decide = deciding if causes else set()
         groups = {_group(parameter) for parameter in causes - deciding} | {
             group for group in map(_group, decide) if sizes[group] <= MAX_JOINT_FIELDS
@@ -92,7 +92,7 @@ def find_dependencies(model: Model) -> Found:
         causes |= {parameter for parameter in acting if _group(parameter) in groups}
         causes |= acting.keys() & UNSEEN.get(item.name, ())
         if model.shows(item.name):
-            found[item.name] = [known[place].name for place in free if _thing(known[place].name) in causes]
+            found[item.name] = [known[place].name for place in free if _whole_array(known[place].name) in causes]
     return found
 
 
@@ -106,8 +106,8 @@ def _acting(model: Model) -> dict[str, set[str]]:
     """Return parameter -> the outputs that it has been seen to change; an array counts as one."""
     known = variables(model.params, model.first_params())
     free = [place for place, item in enumerate(known) if model.shows(item.name)]
-    names = [_thing(item.name) for item in known]
-    outputs = [_thing(item.name) for item in variables(model.outputs)]
+    names = [_whole_array(item.name) for item in known]
+    outputs = [_whole_array(item.name) for item in variables(model.outputs)]
     acting: dict[str, set[str]] = {name: set() for name in names}
     start = _starter(model)
 
@@ -131,13 +131,15 @@ def _acting(model: Model) -> dict[str, set[str]]:
     for point in _plain_points(known, free):
         expected = start(point)
         for place in lone:
-            for value in _ways(known[place], point[place]):
+            for value in _alternatives(known[place], point[place]):
                 search(point, expected, {place: value}, (place,))
     for point in _sample_points(known, free, model.name):
         expected = start(point)
-        ways = {place: _ways(known[place], point[place]) for place in free}
+        alternatives = {place: _alternatives(known[place], point[place]) for place in free}
         for number in range(MOVES_PER_POINT):
-            search(point, expected, {place: way[number % len(way)] for place, way in ways.items()}, free)
+            search(
+                point, expected, {place: values[number % len(values)] for place, values in alternatives.items()}, free
+            )
     return acting
 
 
@@ -220,7 +222,7 @@ def _sample(item: Variable, draw: random.Random) -> Any:
     return _within(item, item.start + share * width)
 
 
-def _ways(item: Variable, now: Any) -> list[Any]:
+def _alternatives(item: Variable, now: Any) -> list[Any]:
     """Return the values that a parameter moves to from ``now``: of numbers a little more, a little less, and far."""
     if item.kind is bool:
         return [not now]
@@ -236,13 +238,13 @@ def _within(item: Variable, value: float) -> float:
     return min(max(value, item.signal.low), item.signal.high)
 
 
-def _thing(name: str) -> str:
+def _whole_array(name: str) -> str:
     """Return the name, for a part of an array the array's: ``scene.boxes`` of ``scene.boxes[3].x``."""
     return name.split("[")[0]
 
 
-def _group(thing: str) -> str:
-    return thing.rpartition(".")[0]
+def _group(variable: str) -> str:
+    return variable.rpartition(".")[0]
 
 
 def _hash(model: Model) -> str:

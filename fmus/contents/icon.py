@@ -1,4 +1,4 @@
-"""The icon of an FMU, drawn by code: a block with its ports and a settling response, in a colour of its name."""
+"""The icon of an FMU, generated: a block with its ports and a settling response, in a colour of its name."""
 
 import colorsys
 import hashlib

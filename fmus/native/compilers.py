@@ -17,11 +17,11 @@ from fmus.installation import install_command
 from fmus.native.platforms import CompileTarget, host_target
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
-"""What every compiler is told that the results depend on, or the speed."""
+"""Options of every compiler on which the results depend, or the speed."""
 ZIG = ("-fno-sanitize=all", "-mllvm", "-disable-fp-call-folding")
-"""What ziglang's is told besides: its own library does not work out sin() of a known number, it has other bits."""
+"""Further options of ziglang's: its own library does not work out sin() of a known number, it has other bits."""
 LINUX_ALONE = ("-nostdlib", "-lc")
-"""What ziglang's is told for Linux besides: to leave out its runtime, which nothing here calls; making it takes as long
+"""Further options of ziglang's for Linux: to leave out its runtime, which nothing here calls; making it takes as long
 as the models."""
 SHARED = (
     *FLAGS,

@@ -29,7 +29,7 @@ NEEDS = """
 the model's Python source. It needs no Python, no other library than the C library, and no licence. Several instances
 may run in one process and on several threads, each instance on one thread at a time.</p>
 <p>For another target compile <code>sources/{unit}</code> alone; its first lines say with which flags. Linked into one
-image with other FMUs its functions have the prefix <code>{name}_</code>, if FMI{fmi}_FUNCTION_PREFIX says so.</p>
+image with other FMUs its functions have the prefix <code>{name}_</code>, as FMI{fmi}_FUNCTION_PREFIX defines.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi{fmi}Error and a message to the logger; nothing is changed by such a call.</p>
 <!-- stack -->

@@ -1,4 +1,4 @@
-"""C structures as ctypes has them, for the loops in C that are told by tables what to do."""
+"""C structures as ctypes has them, for the loops in C that follow tables."""
 
 import ctypes
 from typing import Any

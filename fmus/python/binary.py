@@ -1,4 +1,4 @@
-"""What the FMI binary of PythonFMU 0.7 gets wrong about threads, references and the path, mended from inside.
+"""What the FMI binary of PythonFMU 0.7 gets wrong about threads, references and the path, repaired from inside.
 
 At every instantiation it drops one reference to the namespace of the slave's script too many, and leaves the FMU's
 folder in ``sys.path``. When an exception comes out of a method (a KeyboardInterrupt can strike before the first line

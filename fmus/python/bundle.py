@@ -22,7 +22,7 @@ TESTS = "test_"
 """How the files of a package begin that stay at home."""
 RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
 MIN_PYTHON = (3, 11)
-"""Of the host; the script below is read by any Python 3 and says so."""
+"""Of the host; the script below is read by any Python 3, which it reports."""
 SCRIPT = '''"""Entry point of this FMU."""
 
 import sys

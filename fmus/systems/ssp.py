@@ -2,7 +2,7 @@
 
 Every tool reads a different part. The parameter sets hang on the components (not on the system), with bare variable
 names and one name for all sets: libcosim finds them there. OMSimulator takes the step size from an annotation of the
-system, libcosim from one of the default experiment. Tools that read no parameter sets, or only those they are told,
+system, libcosim from one of the default experiment. Tools that read no parameter sets, or only those given to them,
 drive the same scenario: the FMUs inside start with its parameters.
 
 Outputs of the system itself are for tools that show no others. libcosim and Ecos refuse a file that has some: they

@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the mended log and print what is in it and what is lost. Returns 0."""
+    """Write the repaired log and print what is in it and what is lost. Returns 0."""
     with lock_with(arguments.file, arguments.file):
         found = recover(arguments.file)
     content = f"{found.messages} messages up to {found.last_ns / 1e9:.2f} s"

@@ -1,4 +1,4 @@
-"""What a run may take, told before it is begun: log and scratch space grow with its exchanges, memory does not."""
+"""What a run may take, reported before it begins: log and scratch space grow with its exchanges, memory does not."""
 
 import shutil
 import tempfile
@@ -10,7 +10,7 @@ BYTES_PER_VALUE = 8
 LOG_BYTES_PER_VALUE = 2.5
 """Bytes of a value in the log, about."""
 WARNED_EXCHANGES = 1_000_000
-"""Exchanges from which the cost is told: over a minute where every exchange is made in Python."""
+"""Exchanges from which the cost is reported: over a minute where every exchange is made in Python."""
 MAX_BYTES = 1e12
 """A run that may write a larger log is refused: no computer that parks cars has the room."""
 

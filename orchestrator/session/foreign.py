@@ -26,12 +26,12 @@ FOREIGN = "foreign"
 MODEL_CHOICE = "controller.system"
 """Chooses one of our controllers: nothing is left out where another FMU takes its place."""
 Files = Mapping[str, Path]
-"""FmuInstance -> FMU of somebody else's."""
+"""FmuInstance -> third-party FMU."""
 LogCallback = Callable[[str, int, str], None]
 
 
 class ImportedFmus(NamedTuple):
-    """The FMUs of somebody else's in a run, and how far they are trusted."""
+    """The third-party FMUs in a run, and how far they are trusted."""
 
     files: Files = MappingProxyType({})
     is_in_process: bool = False
@@ -77,7 +77,7 @@ def foreign_of(arguments: argparse.Namespace) -> ImportedFmus:
 
 
 class Fitting(NamedTuple):
-    """A scenario with the FMUs of somebody else's that it is run with."""
+    """A scenario with the third-party FMUs that it is run with."""
 
     scenario: Scenario
     unsupported_parameters: list[str]

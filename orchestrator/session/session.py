@@ -117,8 +117,8 @@ def run_scenario(
 ) -> SimulationResult:
     """Return the recording of one run. Errors of an instance end it as aborted; ``BadInput`` passes through.
 
-    ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
-    somebody else's, in the place of ours or beside them. ``realtime`` holds the run to the clock on the wall.
+    ``warn`` receives, before the run, what is allowed in the system but hardly meant. ``foreign`` are third-party
+    FMUs, in the place of ours or beside them. ``realtime`` holds the run to real time.
     ``started`` says when and by which command, for the log (``provenance.start_record``).
     """
     messages = Messages()
@@ -213,11 +213,11 @@ def _reachable_stop_ns(system: ElaboratedSystem, scenario: Scenario) -> int:
     stop_ns = scenario.stop_ns // common * common
     if not stop_ns:
         text = f"{scenario.longest:.9g} s is less than the {common / NS_PER_SECOND:.9g} s"
-        raise BadInput(f"{text} which {_fixed_step_names(system)} needs", file=scenario.file, key="stop_time")
+        raise BadInput(f"{text} which {_names_at_fixed_step(system)} needs", file=scenario.file, key="stop_time")
     return stop_ns
 
 
-def _fixed_step_names(system: ElaboratedSystem) -> str:
+def _names_at_fixed_step(system: ElaboratedSystem) -> str:
     return ", ".join(item.name for item in system.instances if not item.has_variable_step)
 
 
@@ -226,9 +226,8 @@ def _early_stop(system: ElaboratedSystem, scenario: Scenario, stop_ns: int) -> l
     if stop_ns == scenario.stop_ns:
         return []
     text = f"stop_time {scenario.longest:.9g} s is no whole number of steps"
-    return [
-        f"{text}, and the step of {_fixed_step_names(system)} is fixed: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"
-    ]
+    fixed = _names_at_fixed_step(system)
+    return [f"{text}, and the step of {fixed} is fixed: a run ends at {stop_ns / NS_PER_SECOND:.9g} s"]
 
 
 def _warnings(system: ElaboratedSystem, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:

@@ -675,7 +675,7 @@ def extremes_of_loop(x: float, y: float, n: int, m: int, p: bool, q: bool) -> fl
     return min(value * y for value in (x, 2.0, 3.0)) + max(abs(value) for value in (x, y))
 
 
-def lazy(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+def short_circuit(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
     if p and _far(Big(Point(x, y))) > 1.0 or q and any(value > x for value in START.row):
         return 1.0
     return _far(Big(Point(y, x))) if n > 0 and m > 0 else -1.0

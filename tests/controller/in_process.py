@@ -58,7 +58,7 @@ class Looking:
 
 
 def run(parameters: dict[str, dict[str, Any]], stop_ns: int, step_ns: int, look: Look) -> None:
-    """Drive until ``look`` says so, or until ``stop_ns``."""
+    """Drive until ``look`` is true, or until ``stop_ns``."""
     kind = CompiledInstance if can_compile() else ModelInstance
     instances = [kind(name, model, parameters[name]) for name, model in MODELS.items()]
     master = CoSimulation(list(instances), step_ns, stop_ns)

@@ -87,13 +87,13 @@ def test_the_mirror_image_and_the_foot() -> None:
     start = Pose(9.0, 3.0, 0.1)
     route = s_curve(start, 0.0, bend, bend, 0.0)
     image = mirror_route(route, -1.0, Pose(9.0, -3.0, -0.1), -1)
-    for way in (0.5, 3.0, 6.0):
-        here, there = point_at(route, way).pose, point_at(image, way).pose
+    for s in (0.5, 3.0, 6.0):
+        here, there = point_at(route, s).pose, point_at(image, s).pose
         assert (there.x, -there.y, -there.heading) == pytest.approx(here)
         aside = Pose(
             here.x - 0.05 * math.sin(here.heading), here.y + 0.05 * math.cos(here.heading), here.heading + 0.02
         )
-        foot = foot_on(route, way - 0.02, aside)
-        assert foot.way == pytest.approx(way, abs=2e-3)
+        foot = foot_on(route, s - 0.02, aside)
+        assert foot.s == pytest.approx(s, abs=2e-3)
         assert foot.lateral_error == pytest.approx(0.05, abs=1e-3)
         assert foot.heading_error == pytest.approx(0.02, abs=1e-3)

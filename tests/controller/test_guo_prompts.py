@@ -1,4 +1,4 @@
-"""What the driver is told: slow before trouble and until it is over, a direction whenever the car shall set out."""
+"""What the driver sees: slow before trouble and until it is over, a direction whenever the car shall set out."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""The monitor of the steering against the vehicle's own: what is late, slow or lazy is no fault, and it is learnt."""
+"""The monitor of the steering against the vehicle's own: dead time, rate and lag are no faults, and they are learnt."""
 
 import math
 from collections.abc import Callable

@@ -32,7 +32,7 @@ def test_path_errors_obey_their_linear_equation(
 
 @given(y=small, heading=st.floats(-1.2, 1.2), direction=st.sampled_from([1.0, -1.0]))
 def test_point_errors_obey_their_linear_equation(y: float, heading: float, direction: float) -> None:
-    """y'' = -k3 y - k4 y' over the way driven towards the point, eq. (15)."""
+    """y'' = -k3 y - k4 y' over the distance travelled towards the point, eq. (15)."""
     k3, k4 = 1.0, 4.0
     error = point_error(Pose(-direction, y, heading), Pose(0.0, 0.0, 0.0))
     phi = point_tracking_angle(error, direction, k3, k4, L)

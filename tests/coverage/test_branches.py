@@ -55,7 +55,7 @@ def never(x: int) -> int:
 
 @pytest.fixture
 def law(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """A package with a law of some branches, and somebody who has imported one of its functions before."""
+    """A package with a law of some branches, and a module that has imported one of its functions before."""
     folder = tmp_path / "branchy"
     folder.mkdir()
     (folder / "__init__.py").write_text("from branchy.law import sign\n")

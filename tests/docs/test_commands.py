@@ -131,7 +131,7 @@ def test_most_pages_have_commands() -> None:
 
 @pytest.fixture(scope="module")
 def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What pages take for granted: a log, a second one, somebody's controller, rules of one's own."""
+    """What pages take for granted: a log, a second one, a third-party controller, own rules."""
     folder = tmp_path_factory.mktemp("shelf")
     for name, sets in {"A": [], "B": ["--set", "controller.guo2015.k4=3"]}.items():
         main(["run", "guo2015-case4", "--out", str(folder / name), "--no-page", "--quiet", *sets])

@@ -95,12 +95,12 @@ def test_a_find_runs_again_to_the_same_bits(study: Any, tmp_path: Path, capsys: 
     }
     assert summary.outcome == "not_parked"
     assert main(["falsify", "--regression", str(folder)]) == 1
-    mended = folder / f"{again[0].name}.yaml"
-    content = yaml.safe_load(mended.read_text())
+    repaired = folder / f"{again[0].name}.yaml"
+    content = yaml.safe_load(repaired.read_text())
     for path in folder.glob("*.yaml"):
         path.unlink()
     content["controller"]["target.y"] = TRUE
-    mended.write_text(yaml.safe_dump(content))
+    repaired.write_text(yaml.safe_dump(content))
     assert main(["falsify", "--regression", str(folder)]) == 0
     assert [item.same for item in rerun_counterexamples(folder)] == [False]
 

@@ -59,7 +59,7 @@ def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch: pytest.MonkeyP
     assert folder == tmp_path / f"apa-cosim-{os.getuid()}"
     assert folder.stat().st_mode & 0o777 == 0o700
     folder.chmod(0o777)
-    with pytest.raises(RuntimeError, match="belongs to somebody else; name a folder with APA_DIST"):
+    with pytest.raises(RuntimeError, match="belongs to another user; name a folder with APA_DIST"):
         cache_paths.build_folder()
 
 

@@ -84,7 +84,7 @@ def test_coordinates_of_a_map_are_in_range() -> None:
     assert outside("vehicle", {"driver.takeover_time": 1e9, "scene.boxes[3].disappear_at": 1e9}) == []
 
 
-# How a type says it
+# How a type declares it
 
 
 def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none() -> None:

@@ -169,7 +169,7 @@ def a_build(at: Stage, draw: random.Random) -> str:
 
 
 def a_recover(at: Stage, draw: random.Random) -> str:
-    """A log is mended whole or not at all, and the one that is whole stays."""
+    """A log is repaired whole or not at all, and the one that is whole stays."""
     out = at.folder / "recover"
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir()

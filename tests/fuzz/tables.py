@@ -42,7 +42,7 @@ class Written(NamedTuple):
 
 
 def written(draw: random.Random, damage: str = "") -> Written:
-    """Return a random table, with one thing wrong if that is asked for."""
+    """Return a random table, with one mistake if that is requested."""
     unit = draw.choice(list(UNITS))
     given, factor = draw.choice(list(UNITS[unit].items()))
     time_unit, time_factor = draw.choice(list(TIMES.items()))

@@ -33,10 +33,10 @@ def taken(*words: str) -> tuple[float, float]:
             child.kill()
 
 
-told = pytest.mark.skipif(not TOLD, reason="the system does not say how long a thread waited for a core")
+needs_waiting_time = pytest.mark.skipif(not TOLD, reason="the system does not say how long a thread waited for a core")
 
 
-@told
+@needs_waiting_time
 def test_a_core_shared_with_others_is_half_the_time() -> None:
     core = str(min(os.sched_getaffinity(0)))
     with subprocess.Popen([sys.executable, "-c", SPINS, core], stdout=subprocess.DEVNULL) as neighbour:
@@ -83,7 +83,7 @@ def test_what_says_that_it_goes_on_does_not_hang() -> None:
             time.sleep(60.0)
 
 
-@told
+@needs_waiting_time
 def test_orphans_are_watched_on() -> None:
     family = f"import subprocess, sys, time\nsubprocess.Popen([sys.executable, '-c', {SLEEPS!r}])\ntime.sleep(60)"
     with subprocess.Popen([sys.executable, "-c", family], stdout=subprocess.PIPE) as child:

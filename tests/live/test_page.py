@@ -69,7 +69,7 @@ def test_the_valet_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
     page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
     page.fill("#search", "scene.boxes[6].y")
     page.click("#found button")
-    fill(page, "vehicle.scene.boxes[6].y", "4")  # a wall, of which the controller is told by its map
+    fill(page, "vehicle.scene.boxes[6].y", "4")  # a wall, which the controller's map contains
     page.wait_for_function("() => !window.live.isDue")
     agrees(ghost(page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
     assert ghost(page)["manoeuvres"] == 3

@@ -17,7 +17,7 @@ CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, VALET, *SYSTEM
 
 
 def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:
-    """Return what an importer is told of a variable, its causality and start value aside."""
+    """Return what an importer reads of a variable, its causality and start value aside."""
     states = item.signal.states and [(state.name, state.value) for state in item.signal.states]
     return item.name, fmi_type, item.signal.unit, limits(item), states, shape
 

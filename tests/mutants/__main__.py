@@ -64,7 +64,7 @@ def main() -> int:
 
 
 def _done(out: Path | None) -> set[str]:
-    """Return the names of the mutants that somebody has found already."""
+    """Return the names of the mutants already detected."""
     if out is None or not out.exists():
         return set()
     rows = [json.loads(line) for line in out.read_text(encoding="utf-8").splitlines()]

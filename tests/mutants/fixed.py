@@ -35,7 +35,7 @@ NO_END = "no end"
 LIMIT_OF_CPU = 40
 """Processor time [s] after which a mistake counts as detected, since its test does not end; a tenth is usual."""
 LEAST_IN_CODE = 0.9
-"""Share of the list that must still be in the code; below it is to be drawn anew: ``--fixed --find``."""
+"""Share of the list that must still be in the code; below it a new list is due: ``--fixed --find``."""
 
 
 class Row(NamedTuple):

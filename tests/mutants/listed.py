@@ -1,4 +1,4 @@
-"""Twenty mistakes that somebody might make in NTBPTcwPT (Guo 2015): signs, gains, thresholds, guards, transitions."""
+"""Twenty plausible mistakes in NTBPTcwPT (Guo 2015): signs, gains, thresholds, guards, transitions."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""FMUs made from one C file and one modelDescription.xml, as somebody else would."""
+"""FMUs made from one C file and one modelDescription.xml, as another supplier would."""
 
 import zipfile
 from functools import cache

@@ -48,7 +48,7 @@ def parking_scenarios() -> list[str]:
 
 
 def _finds_its_slot(scenario: Scenario) -> bool:
-    """Return whether there is a slot to be found, and nothing told from outside or done by way of faults."""
+    """Return whether there is a slot to be found, without external slots and faults."""
     return scenario.slot is not None and scenario.system is None and not scenario.faults
 
 

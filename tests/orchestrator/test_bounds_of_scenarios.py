@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
-from orchestrator.evaluation.verdict.geometry import sample_path, things
+from orchestrator.evaluation.verdict.geometry import moving_boxes, sample_path
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import Messages, make_instances, run_instances
@@ -95,9 +95,9 @@ def test_a_path_that_is_not_finite_is_not_drawn(values: dict[str, float], odd: f
 
 def test_a_box_that_is_not_finite_is_not_drawn() -> None:
     box = {f"scene.boxes[1].{name}": 1.0 for name in ("x", "y", "length", "width", "speed_x")}
-    assert len(things(box)) == 1
+    assert len(moving_boxes(box)) == 1
     for name in (*box, "scene.boxes[1].moves_at"):
-        assert things({**box, name: math.nan}) == []
+        assert moving_boxes({**box, name: math.nan}) == []
 
 
 def test_more_boxes_than_there_are_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""A scenario's car: told once, for the vehicle and for what the controller believes."""
+"""A scenario's car: given once, for the vehicle and for the controller's model of it."""
 
 from pathlib import Path
 from typing import Any

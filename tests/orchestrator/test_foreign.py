@@ -1,4 +1,4 @@
-"""A controller of somebody else's: connected as FMI 2.0 allows, judged by what was measured, unable to stop a test."""
+"""A third-party controller: connected as FMI 2.0 allows, judged by what was measured, unable to stop a test."""
 
 import html
 import json

@@ -1,4 +1,4 @@
-"""A controller of somebody else's, which has none of our parameters, is judged by what the scenario says is true."""
+"""A third-party controller, which has none of our parameters, is judged by the scenario's ground truth."""
 
 import json
 from pathlib import Path

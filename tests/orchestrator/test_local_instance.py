@@ -1,4 +1,4 @@
-"""Runs with FMUs: the same bits as in process, errors told, nothing left behind."""
+"""Runs with FMUs: the same bits as in process, errors reported, nothing left behind."""
 
 import tempfile
 import zipfile

@@ -113,7 +113,7 @@ def test_a_run_that_is_stored_meanwhile_is_judged_to_the_same_bits(
 
 
 def test_contact_by_poses_is_the_same_block_by_block(parked: tuple[Recording, Path], stored: Recording) -> None:
-    """A vehicle of somebody else's puts out no clearance, so every pose is held against the scene."""
+    """A third-party vehicle puts out no clearance, so every pose is held against the scene."""
     scenario = read_logged_run(parked[0]).scenario.model_copy(
         update={"obstacles": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]}
     )
@@ -253,7 +253,7 @@ def peak_mb(command: str, log: Path, folder: Path, setup: str = SMALL) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="peak memory is told by getrusage")
+@pytest.mark.skipif(sys.platform == "win32", reason="peak memory comes from getrusage")
 @pytest.mark.parametrize("command", ["check", *(pytest.param(item, marks=pytest.mark.release) for item in RARER)])
 def test_memory_does_not_grow_with_the_log(command: str, tmp_path: Path) -> None:
     """Read at once, the longer log takes 43 MB more."""
@@ -266,7 +266,7 @@ def test_memory_does_not_grow_with_the_log(command: str, tmp_path: Path) -> None
 
 
 @pytest.mark.release
-@pytest.mark.skipif(sys.platform == "win32", reason="peak memory is told by getrusage")
+@pytest.mark.skipif(sys.platform == "win32", reason="peak memory comes from getrusage")
 def test_a_log_of_411_mb_takes_less_memory_than_it_has_bytes(tmp_path: Path) -> None:
     log = tmp_path / "run.mcap"
     long_log(log, FULL_ROWS)

@@ -23,7 +23,7 @@ PIPELINES = ["github", "gitlab"]
 
 @pytest.fixture
 def pushed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with a controller of somebody's own and both pipelines."""
+    """A repository with a user's controller and both pipelines."""
     monkeypatch.chdir(tmp_path)
     assert main(["new", "controller", NAME]) == 0
     assert main(["new", "ci", NAME]) == 0

@@ -1,4 +1,4 @@
-"""What counts as parked: the controller says so, the car stands, in the slot, within the limits; one judge for all."""
+"""What counts as parked: the controller reports it, the car stands in the slot within the limits; one judge for all."""
 
 import json
 import math
@@ -171,7 +171,7 @@ def test_a_log_without_a_target_is_judged_by_what_the_controller_was_told() -> N
     del old.info["scenario"]["target"]
     old.parameters |= {"controller.target.x": 1.0, "controller.target.y": 1.9, "controller.target.heading": 0.5}
     scenario, note = read_logged_run(old)
-    assert "the pose the controller was told" in note
+    assert "the target given to the controller" in note
     found = summarize(old, scenario, 1.0, note)
     assert found.final.lateral_error == pytest.approx(0.1 * math.cos(0.5))
     assert found.notes == [note]

@@ -1,4 +1,4 @@
-"""A log cut off anywhere is mended up to its last whole chunk; a killed run leaves such a log."""
+"""A log cut off anywhere is repaired up to its last whole chunk; a killed run leaves such a log."""
 
 import os
 import signal
@@ -95,7 +95,7 @@ def test_what_stands_behind_a_broken_chunk_is_kept(whole: Path, tmp_path: Path) 
 def test_a_mended_log_says_what_it_lacks(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = recover(flipped(whole, tmp_path, chunk_ends(whole)[2] + 200))
     read_log(found.path)
-    assert "is a mended log; it lacks byte" in capsys.readouterr().err
+    assert "is a repaired log; it lacks byte" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("shift", [1, 5, 8])
@@ -166,13 +166,13 @@ def test_a_killed_run_leaves_all_but_the_last_chunk(tmp_path: Path) -> None:
     process.communicate()
     assert not (tmp_path / "run.mcap").exists()
     size = (tmp_path / "run.mcap.part").stat().st_size
-    mended = subprocess.run(
+    repaired = subprocess.run(
         [sys.executable, "-m", "orchestrator", "recover", str(tmp_path / "run.mcap.part")],
         capture_output=True,
         text=True,
         check=True,
     )
-    assert "run.mcap" in mended.stdout
+    assert "run.mcap" in repaired.stdout
     found = read_log(tmp_path / "run.mcap")
     assert np.diff(found.t_ns).tolist() == [10_000_000] * (len(found.t_ns) - 1)
     assert (tmp_path / "run.mcap").stat().st_size > size - 64 * 1024

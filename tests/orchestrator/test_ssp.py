@@ -42,7 +42,7 @@ system:
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a system of somebody's: two levels, a parameter set, a mapping, transformations."""
+    """A folder with a third-party system: two levels, a parameter set, a mapping, transformations."""
     folder = tmp_path_factory.mktemp("desk")
     with zipfile.ZipFile(folder / "yard.ssp", "w") as archive:
         archive.write(c_fmus.THEIR / "system.ssd", "SystemStructure.ssd")

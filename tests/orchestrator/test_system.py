@@ -34,7 +34,7 @@ MOST_LINES = 20
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with somebody's FMUs and the scenarios that connect them."""
+    """A folder with third-party FMUs and the scenarios that connect them."""
     folder = tmp_path_factory.mktemp("desk")
     for make in (c_fmus.two_arcs, c_fmus.sensor, c_fmus.plant):
         make(folder)

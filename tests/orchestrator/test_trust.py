@@ -23,7 +23,7 @@ STUDY = "name: study\nscenario: got.yaml\nruns: {grid: {vehicle.start.x: [0, 0.1
 
 @pytest.fixture
 def received(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return a folder with files of somebody else; their code writes the file ``ran`` beside the folder."""
+    """Return a folder with third-party files; their code writes the file ``ran`` beside the folder."""
     monkeypatch.delenv(VARIABLE)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""What is true is shown as the scenario says it, whatever the controller was told and whatever an FMU does not have."""
+"""Ground truth is shown as the scenario defines it, whatever the controller received and an FMU lacks."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ TOLD = load_scenario("guo2015-case4", ["controller.target.y=-3.2", "stop_time=2"
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[SimulationResult, Path]:
-    log = tmp_path_factory.mktemp("told") / "run.mcap"
+    log = tmp_path_factory.mktemp("ground_truth") / "run.mcap"
     return run_scenario(TOLD, log=log), log
 
 

@@ -53,7 +53,7 @@ def test_steering_rises_in_time_and_swings_where_l1_jumps(reproduction: Reproduc
     assert found["longest rise or fall of the angle, to 90 %"].passed
     assert 2.0 < float(found["longest until it stays within 8 %"].ours) < 2.05
     assert found["swing back on the way into curves 3 and 4"].passed
-    assert found["swing back on the way out of curves 3 and 4"].passed is False
+    assert found["swing back after curves 3 and 4"].passed is False
 
 
 def test_figures_are_written(reproduction: Reproduction) -> None:

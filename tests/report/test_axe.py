@@ -1,4 +1,4 @@
-"""All pages against WCAG 2.2 AA: light, dark, and with the few colours that somebody forces on a page."""
+"""All pages against WCAG 2.2 AA: light, dark, and with forced colours."""
 
 from pathlib import Path
 from typing import Any

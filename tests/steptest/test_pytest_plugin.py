@@ -1,4 +1,4 @@
-"""The pytest plugin, used by a test file of somebody else's."""
+"""The pytest plugin, used by a third-party test file."""
 
 from importlib.metadata import entry_points
 from typing import Any

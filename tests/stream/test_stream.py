@@ -1,4 +1,4 @@
-"""Runs by the clock on the wall: how late, who looks on, what is changed meanwhile, how they end."""
+"""Runs in real time: delay, viewers, changes meanwhile, ends."""
 
 import contextlib
 import json
@@ -34,7 +34,7 @@ K4 = "controller.guo2015.k4"
 
 
 class Clock:
-    """A clock that goes on only when somebody sleeps, or when it is told to."""
+    """A clock that goes on only during a sleep, or on request."""
 
     def __init__(self) -> None:
         self.now = 5.0

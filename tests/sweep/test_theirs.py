@@ -1,4 +1,4 @@
-"""Studies of systems with somebody else's FMU: its parameters varied, its outputs kept, the same bits again."""
+"""Studies of systems with a third-party FMU: its parameters varied, its outputs kept, the same bits again."""
 
 import shutil
 from pathlib import Path

@@ -251,4 +251,4 @@ def test_an_input_left_open_is_what_the_tool_says(tmp_path: Path) -> None:
             if k == 199:
                 moving = abs(host.get(["vehicle.speed"])[0])
         assert moving > 0.3
-        assert host.get(["vehicle.speed"])[0] == 0.0, "told to stop, whatever the controller says"
+        assert host.get(["vehicle.speed"])[0] == 0.0, "a stop is requested, whatever the controller requests"

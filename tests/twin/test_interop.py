@@ -122,9 +122,9 @@ def test_libcosim_reads_the_ssp(system: Any, ssp: Any, ours: Any) -> None:
     assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-@pytest.mark.parametrize("reported", [{"parameter_set": "scenario"}, {}], ids=["told the set", "told nothing"])
+@pytest.mark.parametrize("reported", [{"parameter_set": "scenario"}, {}], ids=["with the set", "with nothing"])
 def test_ecos_reads_the_ssp(ssp: Any, ours: Any, reported: Any) -> None:
-    """Where it is installed: it needs oneTBB besides its package. Not told the set it drives the same scenario."""
+    """Where it is installed: it needs oneTBB besides its package. Without the set it drives the same scenario."""
     try:
         from ecospy import EcosSimulation
     except (ImportError, OSError) as error:

@@ -101,7 +101,7 @@ def test_every_target_equals_the_models_in_process(fmus: Any, targets: Any, name
     for target, models in targets.items():
         for model, play in models.items():
             assert unlike(played(play, whole, expected.recording, model), expected.recording) == [], target
-    if whole.system is not None:  # inputs that are told from outside: no run of the batch
+    if whole.system is not None:  # external inputs: no run of the batch
         return
     fixed, design = design_of([LabelledScenario({}, whole)])
     job = make_job(Study(fixed, design, {"name": name}))._replace(measures=list(KEPT))

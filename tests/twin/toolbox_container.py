@@ -1,6 +1,6 @@
 """A scenario's FMUs joined by fmucontainer of the FMU Manipulation Toolbox: a master that is not ours.
 
-It reads all outputs, writes all inputs, steps all. It is told in JSON, as it does not read the parameters of an .ssp.
+It reads all outputs, writes all inputs, steps all. Its input is JSON, as it does not read the parameters of an .ssp.
 """
 
 import json

@@ -71,18 +71,24 @@ def _names(name: str, tree: ast.Module) -> Iterator[Finding]:
             if constant.isupper() and constant.isalpha() and _is_number(node.value):
                 yield Finding(name, node.lineno, constant, "a constant's name says what it limits")
     for item in ast.walk(tree):
-        if isinstance(item, ast.FunctionDef) and _is_participle(item.name):
+        if isinstance(item, ast.FunctionDef) and _is_participle(item.name) and not _is_attribute(item):
             yield Finding(name, item.lineno, item.name, "a function is a verb, or the noun that it returns")
 
 
 def _is_number(value: ast.expr) -> bool:
     value = value.operand if isinstance(value, ast.UnaryOp) else value
-    is_constant = isinstance(value, ast.Constant) and isinstance(value.value, int | float)
-    return isinstance(value, ast.BinOp) or (is_constant and not isinstance(getattr(value, "value", None), bool))
+    if isinstance(value, ast.BinOp):
+        return _is_number(value.left) or _is_number(value.right)
+    return isinstance(value, ast.Constant) and type(value.value) in (int, float)
+
+
+def _is_attribute(function: ast.FunctionDef) -> bool:
+    """Return whether a function is read as an attribute, whose name states a property."""
+    return any(isinstance(item, ast.Name) and item.id == "property" for item in function.decorator_list)
 
 
 def _is_participle(name: str) -> bool:
-    word = name.strip("_").split("_")[0]
+    word = name.strip("_").removeprefix("closed_loop").split("_")[0]
     return word in PARTICIPLES or (word.endswith("ed") and word not in NOUNS)
 
 

@@ -17,7 +17,7 @@ PROSE = {
     r"\bmended?\b": "fixed, repaired",
     r"\btold\b": "given, reported, displayed (say which)",
     r"\bthought to be\b|\bbelieved in\b|\bit thinks\b": "estimated, modelled",
-    r"\blazy\b": "lag",
+    r"(?<!loading=.)\blazy\b": "lag",
     r"\bas mild as\b|\bmildest\b": "minimal counterexample",
     r"\bblunt(ly)?\b|\bodd ones?\b": "state what is meant",
     r"\bthe house('s)?\b|\bhouse limits\b": "project limits",

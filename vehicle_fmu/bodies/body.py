@@ -10,7 +10,7 @@ from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, VehicleParams
 
 SHOWN_STANDSTILL_SPEED = 1e-3
-"""Speed [m/s] below which a car that rocks on its tyres is told to stand."""
+"""Speed [m/s] below which a car that rocks on its tyres counts as standing."""
 
 
 class BodyState(NamedTuple):

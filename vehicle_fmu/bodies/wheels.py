@@ -18,7 +18,7 @@ from vehicle_fmu.bodies.tires import Force, TireParams, relax, secants, slide_ra
 
 COMMONROAD = "CommonRoad vehicle models 3.0.2"
 SLIP_REFERENCE_SPEED = 1.0
-"""Slip is told against this speed [m/s] below it."""
+"""Slip is relative to this speed [m/s] below it."""
 
 
 class HubParams(NamedTuple):

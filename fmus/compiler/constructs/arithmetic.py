@@ -71,7 +71,7 @@ def constant(body: FunctionBody, node: ast.Constant) -> Value:
     if isinstance(node.value, str | bytes):
         raise CannotError(node, "a string", "name what is meant by an IntEnum; text is made outside of the model")
     if node.value is None:
-        advice = "return a value on every way; for 'no value' keep a bool beside it that says so"
+        advice = "return a value on every path; for 'no value' keep a bool beside it"
         raise CannotError(node, "None", advice)
     raise CannotError(node, f"the constant {node.value!r}", "write a float, an int, True or False")
 

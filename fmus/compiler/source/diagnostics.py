@@ -17,7 +17,7 @@ class Diagnostic(NamedTuple):
 
 
 class UnsupportedError(TypeError):
-    """A model that cannot be translated, with everything that stands in the way."""
+    """A model that cannot be translated, with every reason."""
 
     def __init__(self, refusals: list[Diagnostic]) -> None:
         self.refusals = sorted(set(refusals))

@@ -79,16 +79,16 @@ class DefiniteAssignment:
         """Return the state after a for loop; one that certainly runs binds what its body binds."""
         self.use(node.iter, state)
         inside = state | {name.id for name in names_in(node.target)}
-        ways, end = self.loop(node.body, inside)
+        ends, end = self.loop(node.body, inside)
         if certainly_runs(node.iter, self.number):
-            return _join_all([end, *ways]) if ways else end
-        return _join_all([state, end, *ways])
+            return _join_all([end, *ends]) if ends else end
+        return _join_all([state, end, *ends])
 
     def while_loop(self, node: ast.While, state: frozenset[str]) -> State:
         """Return the state after a while loop, whose body may not run."""
         self.use(node.test, state)
-        ways, _ = self.loop(node.body, state)
-        return _join_all([state, *ways])
+        ends, _ = self.loop(node.body, state)
+        return _join_all([state, *ends])
 
     def loop(self, body: list[ast.stmt], state: frozenset[str]) -> tuple[list[State], State]:
         """Return the states at breaks, and at the end of a round."""

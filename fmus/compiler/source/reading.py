@@ -59,7 +59,7 @@ class Library:
         raise CannotError(None, f"{function.__qualname__} has no source text that can be read", advice)
 
     def class_node(self, cls: Any) -> ast.ClassDef | None:
-        """Return the syntax tree of a class, if its module defines it in the usual way."""
+        """Return the syntax tree of a class, if its module defines it by a class statement."""
         for node in self.module(cls.__module__).tree.body:
             if isinstance(node, ast.ClassDef) and node.name == cls.__name__:
                 return node

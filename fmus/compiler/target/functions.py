@@ -102,7 +102,7 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
 
 
 def _unread(made: Instance) -> list[str]:
-    """Return a line for each parameter that the function does not look at, which says so to the C compiler."""
+    """Return a line for each parameter that the function does not read, which marks it as unused for the C compiler."""
     names = [re.findall(r"\w+", parameter.text.partition("[")[0])[-1] for parameter in made.parameters]
     return [f"(void){name};" for name in names if not any(re.search(rf"\b{name}\b", line) for line in made.lines)]
 
@@ -115,7 +115,7 @@ def _without_docstring(nodes: list[ast.stmt]) -> list[ast.stmt]:
 
 
 def _parameter(body: FunctionBody, name: str, kind: Kind, changed: InPlace | None) -> Parameter:
-    """Return an argument: a struct as pointer to const, but by value if its name is bound anew on some ways."""
+    """Return an argument: a struct as pointer to const, but by value if its name is bound again on some paths."""
     known = variable(body, name)
     known.kind, known.parameter = kind, True
     if changed is not None and name == changed.name:
@@ -177,7 +177,7 @@ def _word(kind: Kind) -> str:
 
 
 def _result_names(node: ast.FunctionDef, count: int) -> list[str]:
-    """Return the variable that each item of the result is on every way, or an empty string."""
+    """Return the variable that each item of the result is on every path, or an empty string."""
     values = [item.value for item in ast.walk(node) if isinstance(item, ast.Return)]
     rows = [value.elts if isinstance(value, ast.Tuple) and count else [value] for value in values]
     if any(len(row) != max(count, 1) for row in rows):

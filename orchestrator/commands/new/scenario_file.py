@@ -199,9 +199,7 @@ def _mode(outputs: Signals) -> list[str]:
         return [f"mode: {{from: {_yaml(_signal(f'{outputs.owner}.{item.name}'))}, map: {{{pairs}}}}}  {MARK}"]
     unnamed = [item for item, _ in found if "phase" in words(item.name) and item.kind is int]
     if not unnamed:
-        return [
-            f"# mode: {{from: {outputs.owner}.OUTPUT, map: {UNKNOWN_STATES}}}  {MARK} which output says it has parked?"
-        ]
+        return [f"# mode: {{from: {outputs.owner}.OUTPUT, map: {UNKNOWN_STATES}}}  {MARK} which output reports parked?"]
     signal = _yaml(_signal(f"{outputs.owner}.{unnamed[0].name}"))
     return [f"# mode: {{from: {signal}, map: {UNKNOWN_STATES}}}  {MARK} its FMU names no values: which means parked?"]
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from modelkit.geometry import NO_HIT
 from modelkit.variables import variables
-from orchestrator.evaluation.verdict.geometry import CarOutline, kerbs, things, vehicle_parameters
+from orchestrator.evaluation.verdict.geometry import CarOutline, kerbs, moving_boxes, vehicle_parameters
 from orchestrator.evaluation.verdict.polygons import TOUCH_DEPTH, polygon_clearances
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -167,7 +167,7 @@ def _at_poses(poses: Array, t: Array, given: Mapping[str, float]) -> Array:
     car, reach = CarOutline.of(parameters), parameters["scene.tyre_reach"]
     low = CarOutline(car.wheelbase + reach, reach, car.half_width, car.wheelbase)
     found = np.where(np.isfinite(poses).all(axis=1), NO_HIT, np.nan)
-    for box in things(parameters):
+    for box in moving_boxes(parameters):
         rows = np.flatnonzero((box.appear_at <= t) & (t < box.disappear_at))
         moved = np.maximum(0.0, np.minimum(t[rows], box.halts_at) - box.moves_at)
         seen = poses[rows] - np.column_stack([box.speed_x * moved, box.speed_y * moved, np.zeros(len(rows))])

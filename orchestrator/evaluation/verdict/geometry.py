@@ -133,13 +133,13 @@ class Kerb(NamedTuple):
 def boxes(parameters: Mapping[str, float]) -> list[Box]:
     """Return the obstacles among a vehicle's parameters: ``scene.boxes[1].x`` and so on; empty ones left out.
 
-    One that moves is told as many that stand, each for a short time.
+    One that moves becomes many that stand, each for a short time.
     """
-    return [still for box in things(parameters) for still in box.stills()]
+    return [still for box in moving_boxes(parameters) for still in box.stills()]
 
 
-def things(parameters: Mapping[str, float]) -> list[Box]:
-    """Return the boxes as they are told, one for each thing even if it moves."""
+def moving_boxes(parameters: Mapping[str, float]) -> list[Box]:
+    """Return the boxes as given, one for each obstacle even if it moves."""
     rows = [Box(*row) for row in _rows(parameters, "scene.boxes", Box._field_defaults)]
     return [box for box in rows if box.length > 0.0 and box.width > 0.0 and all(map(math.isfinite, box))]
 

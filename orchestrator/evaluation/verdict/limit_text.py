@@ -9,7 +9,7 @@ from orchestrator.inputs.text.readable import readable
 
 
 def limit_text(check: Check) -> str:
-    """Return what is asked for, as people read it."""
+    """Return the requirement, as people read it."""
     return f"{CONDITIONS[check.condition].sign} {check.limit_name or readable(check.limit, check.unit)}"
 
 

@@ -9,7 +9,9 @@ from orchestrator.inputs.scenario.scenario import Scenario, Target
 from orchestrator.inputs.text.yaml_file import explain
 from orchestrator.simulation.cosim.recording import Recording
 
-TOLD = "no target of the scenario is in this log; the errors are taken from the pose the controller was told"
+NO_TARGET_IN_LOG = (
+    "no target of the scenario is in this log; the errors are taken from the target given to the controller"
+)
 NO_TARGET = "no target is in this log: where the car should stand is not known"
 
 
@@ -24,8 +26,8 @@ class LoggedRun(NamedTuple):
 def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed") -> LoggedRun:
     """Return the scenario of ``recording``, which was read from ``file``. Raises ``BadInput`` if it has no meaning.
 
-    Logs of old versions, and of other tools, carry no target or no scenario at all: the pose that the controller
-    was told, if it has parameters ``target.x``, ``target.y``, ``target.heading``, stands in for the target then,
+    Logs of old versions, and of other tools, carry no target or no scenario at all: the target that the controller
+    has, if it has parameters ``target.x``, ``target.y``, ``target.heading``, is the target then,
     and the vehicle's own parameters for what stands around it.
     """
     carried = recording.info.get("scenario") or {}
@@ -41,4 +43,4 @@ def read_logged_run(recording: Recording, file: str = "", name: str = "unnamed")
     if reported is None:
         return LoggedRun(scenario, NO_TARGET)
     target = Target(**dict(zip(Target.model_fields, reported, strict=True)))
-    return LoggedRun(scenario.model_copy(update={"target": target}), TOLD)
+    return LoggedRun(scenario.model_copy(update={"target": target}), NO_TARGET_IN_LOG)

@@ -106,11 +106,11 @@ def facts_of(recording: Recording, scenario: Scenario) -> RunFacts:
     truth = truth_of(scenario, vehicle_parameters(scenario, recording.parameters_of(VEHICLE)))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
     has = {name for name, rows in truth.has().items() if rows[0]}
-    has |= things_of(scenario, recording.parameters_of(VEHICLE))
+    has |= quantities_of(scenario, recording.parameters_of(VEHICLE))
     return RunFacts(made | of_whole_run(recording, scenario), frozenset(has))
 
 
-def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
+def quantities_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
     """Return which of ``obstacles`` and ``scene`` (anything at all) a run has; ``vehicle``: its own parameters."""
     polygons = {"obstacles"} if scenario.obstacles else set[str]()
     return polygons | ({"scene"} if polygons or has_scene(vehicle_parameters(scenario, vehicle)) else set())

@@ -11,7 +11,7 @@ from orchestrator.inputs.scenario.scenario import CONTACT_FREE, MISSED, SUCCESS,
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 BEYOND = "beyond its limit: "
-"""Begins why a run has not done its task whose controller says so, but which misses requirements."""
+"""Begins why a run has not done its task whose controller reports success, but which misses requirements."""
 
 
 CONTACT_ID = library_requirements(CONTACT_FREE)[0].id
@@ -48,8 +48,8 @@ def outcomes(
 ) -> list[tuple[Outcome, str]]:
     """Return (outcome, why) of each run of ``scenario``; ``mode`` and ``reason`` as an FMU declares them, if it does.
 
-    A run has done its task (``parked``, ``finished``) if the controller says so, the car stands, and every requirement
-    in ``asked`` is met, among them that its outline is in the slot. What was not measured is not met.
+    A run has done its task (``parked``, ``finished``) if the controller reports it, the car stands, and every
+    requirement in ``asked`` is met, among them that its outline is in the slot. What was not measured is not met.
     """
     words = _Words(scenario, mode, reason)
     found = []

@@ -108,7 +108,7 @@ def _depths(corners: Array, parts: Sequence[Sequence[int]], length: float, width
 
 
 def _convex_parts(polygon: Sequence[tuple[float, float]]) -> list[list[int]]:
-    """Return a polygon as convex parts, each by the places of its corners: itself, or triangles (ear clipping)."""
+    """Return a polygon as convex parts, each by the places of its corners: itself, or triangles."""
     points = [(float(x), float(y)) for x, y in polygon]
     count = len(points)
     area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, [*points[1:], points[0]], strict=True))
@@ -117,9 +117,9 @@ def _convex_parts(polygon: Sequence[tuple[float, float]]) -> list[list[int]]:
         return [left]
     parts = []
     while len(left) > 3:
-        ear = next((i for i in range(len(left)) if _is_ear(points, left, i)), 0)
-        parts.append([left[ear - 1], left[ear], left[(ear + 1) % len(left)]])
-        del left[ear]
+        tip = next((i for i in range(len(left)) if _is_ear(points, left, i)), 0)
+        parts.append([left[tip - 1], left[tip], left[(tip + 1) % len(left)]])
+        del left[tip]
     return [*parts, left]
 
 

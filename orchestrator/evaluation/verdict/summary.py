@@ -273,13 +273,13 @@ def _events(recording: Recording) -> list[Event]:
 
 
 def _target_difference(recording: Recording, scenario: Scenario) -> str:
-    """Return how the target that the controller is told differs from the scenario's; empty if it does not."""
+    """Return how the target given to the controller differs from the scenario's; empty if it does not."""
     reported = pose_of(recording.parameters_of("controller"), "target")
     if scenario.target is None or reported is None or reported == scenario.target.pose:
         return ""
     along, across, turn = in_frame(*reported, scenario.target.pose)
     return (
-        f"the controller is told another target, {along:+.3f} m along and {across:+.3f} m across the true one, "
+        f"the controller has another target, {along:+.3f} m along and {across:+.3f} m across the true one, "
         f"turned by {turn / RAD_PER_DEGREE:+.2f} deg; the run is judged by the true one"
     )
 
@@ -302,7 +302,7 @@ CHART = "controller.phase"
 MOST_EVENTS = 10_000
 """Changes of phase in a summary; a chart that changes more often is out of order."""
 FAR_FROM_TARGET = 0.5
-"""A car further than this [m] from its target: the headline says so."""
+"""A car further than this [m] from its target: the headline states it."""
 ALLOWED_CONTACT = "in contact, which the scenario allows (contact_allowed)"
 VISIBLE_DISTANCE = 5e-4
 """An outline beyond a boundary by less than this [m] is at it."""

@@ -1,4 +1,4 @@
-"""The car of a scenario: told once, for the vehicle and for what the controller believes.
+"""The car of a scenario: given once, for the vehicle and for the controller's model of it.
 
 ``car: zhang2022`` is a shipped car, or a file, also a vehicle parameter file of CommonRoad.
 ``car: {extends: zhang2022, width: 1.9}`` is one with something changed,
@@ -34,10 +34,10 @@ class VehicleDefinition(NamedTuple):
     reported: dict[str, object]
     """Parameter of ``Car`` -> value, for both models."""
     plant: tuple[Layer, ...] = ()
-    """What only the vehicle is told: masses, tyres, lags."""
+    """Parameters of the vehicle alone: masses, tyres, lags."""
 
     def layers(self, owner: str) -> list[Layer]:
-        """Return what the model ``owner`` is told of its car, lowest first."""
+        """Return the layers of the car's parameters for the model ``owner``, lowest first."""
         both: Layer = ({owner: {f"car.{name}": value for name, value in self.reported.items()}}, None)
         return [*(self.plant if owner == "vehicle" else ()), both]
 
@@ -45,7 +45,7 @@ class VehicleDefinition(NamedTuple):
 def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> VehicleDefinition:
     """Return the car after all layers of a scenario, each (what it says of the car, its file), lowest first.
 
-    A relative path is beside the file that says it; on the command line it is here, else in ``folder``.
+    A relative path is beside the file that contains it; on the command line it is here, else in ``folder``.
     """
     car = VehicleDefinition(None, {})
     for given, file in said:
@@ -77,7 +77,7 @@ def with_said(before: object, name: str, value: object) -> dict[str, object]:
 
 
 def car_parameters(car: Car) -> dict[str, Any]:
-    """Return the flat parameters by which a model is told ``car``."""
+    """Return the flat parameters that describe ``car`` to a model."""
     return {f"car.{item.name}": value for item, value in zip(CAR, flatten(car), strict=True)}
 
 

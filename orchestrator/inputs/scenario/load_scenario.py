@@ -155,7 +155,9 @@ def _target_parameters(scenario: Scenario, more: More) -> dict[str, float | int 
     own = _with_slot(scenario, more)
     if scenario.target is None:
         if any(name.startswith("target.") for name in own):
-            text = "the scenario has no target; write target: {x: .., y: .., heading: ..}, which the controller is told"
+            text = (
+                "the scenario has no target; write target: {x: .., y: .., heading: ..}, which the controller receives"
+            )
             raise BadInput(
                 f"{text}; controller.target is for telling it something else",
                 file=scenario.file,

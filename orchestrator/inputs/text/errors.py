@@ -41,7 +41,7 @@ def line_of(file: object, key: str | None) -> int:
 
 
 class RunError(Exception):
-    """An instance refused to go on; the run is aborted and says so."""
+    """An instance refused to go on; the run is aborted with that reason."""
 
 
 class NotRunError(Exception):

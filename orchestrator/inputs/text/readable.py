@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 
 MAX_LISTED_NAMES = 3
-"""Names of one group that are told one by one."""
+"""Names of one group that are listed one by one."""
 WORDS = ("name", "title", "description", "source")
 """Keys of a scenario that change nothing in a run."""
 
@@ -21,7 +21,7 @@ def readable(value: float, unit: str) -> str:
 
 
 def shortly(names: Iterable[str]) -> str:
-    """Return names in words; more than a few of one group are told by the group and how many they are."""
+    """Return names in words; more than a few of one group are given as the group and their number."""
     groups: dict[str, list[str]] = {}
     for name in names:
         groups.setdefault(".".join(name.split(".")[:2]), []).append(name)

@@ -42,7 +42,7 @@ class TableError(ValueError):
 
 
 class Head(NamedTuple):
-    """One column as its header says it."""
+    """One column as its header defines it."""
 
     written: str
     """As it stands there."""
@@ -73,7 +73,7 @@ class TextTable(NamedTuple):
         if self.time in found and not _is_time(self.heads[self.time]):
             raise TableError(f"has no column of times: the first one, {name}, would be its own time")
         if len(found) > 1 and len(exact) != 1:
-            raise TableError(f"has {len(found)} columns {name}: which one is meant cannot be told")
+            raise TableError(f"has {len(found)} columns {name}: which one is meant is ambiguous")
         if not found:
             names = [head.written for head in self.heads]
             same = [item for item in names if item.casefold().startswith(name.strip().casefold())]

@@ -1,7 +1,7 @@
 """Reading YAML so that a mistake in the file is one clear sentence: the only door for it.
 
 What is read is bounded before it is built: size, nesting, aliases (counted as what they stand for), tags, digits. A key
-written twice is refused. Where each key stands is kept, so that a mistake found later is told with its line.
+written twice is refused. Where each key stands is kept, so that a mistake found later is reported with its line.
 """
 
 import re

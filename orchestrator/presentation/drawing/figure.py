@@ -166,7 +166,7 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
     axis.set_aspect("equal", adjustable="datalim")
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
-    stills = [[still for still in thing.stills() if still.appear_at <= seen.t[-1]] for thing in seen.around.things]
+    stills = [[still for still in box.stills() if still.appear_at <= seen.t[-1]] for box in seen.around.boxes]
     draw_scene(axis, seen, [still for each in stills for still in (*each[:-1:MAX_MOVING_OUTLINES], *each[-1:])])
     x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
     _outlines(axis, seen.car, x, y, heading)
@@ -197,7 +197,7 @@ def draw_scene(axis: Any, seen: Overview, stills: list[Box]) -> None:
 
 
 def draw_thing(axis: Any, box: Box) -> None:
-    """Draw what is in the way: somebody, a car, or a plain box; hatched if it comes or goes."""
+    """Draw an obstacle: a person, a car, or a plain box; hatched if it appears or disappears."""
     what, passing = looks(box), box.comes_or_goes
     style: Any = {"edgecolor": LIGHT["warn"] if passing else GREY, "linewidth": 1.0}
     if what == PERSON:
@@ -223,12 +223,12 @@ def _slot(axis: Any, box: Box) -> None:
 
 
 def _outlines(axis: Any, car: CarOutline, x: Array, y: Array, heading: Array) -> None:
-    """Draw the car at equal distances along its way, later ones darker."""
-    way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y))))])
-    if way[-1] <= 0.0:
+    """Draw the car at equal distances along its path, later ones darker."""
+    travelled = np.concatenate([[0.0], np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y))))])
+    if travelled[-1] <= 0.0:
         rows = np.array([len(x) - 1])
     else:
-        rows = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], PATH_OUTLINES)).clip(0, len(x) - 1))
+        rows = np.unique(np.searchsorted(travelled, np.linspace(0.0, travelled[-1], PATH_OUTLINES)).clip(0, len(x) - 1))
         rows[-1] = len(x) - 1
     for number, row in enumerate(rows):
         share = (number + 1) / len(rows)

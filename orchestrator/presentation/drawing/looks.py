@@ -1,4 +1,4 @@
-"""What a box of a scene is to the eye: somebody, a car, or a box. The pages say the same (scene_parts.js)."""
+"""What a box of a scene looks like: a person, a car, or a box. The pages say the same (scene_parts.js)."""
 
 from orchestrator.evaluation.verdict.geometry import Box
 

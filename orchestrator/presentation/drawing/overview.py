@@ -19,7 +19,7 @@ class Ribbon(NamedTuple):
 class Standing(NamedTuple):
     """What stands around, and where the car should go."""
 
-    things: list[Box]
+    boxes: list[Box]
     polygons: list[list[tuple[float, float]]]
     kerbs: list[Kerb]
     slot: Box | None

@@ -1,6 +1,6 @@
 """What each colour means, the same in pages and pictures.
 
-Blue is the car and what it does, violet (dashed) is what is asked of it or planned. The states of a chart
+Blue is the car and what it does, violet (dashed) is requested of it or planned. The states of a chart
 have eight hues that nothing else has; green, red, amber and grey say that something is good, wrong, urgent
 or idle. On a page of several runs a colour is a run. Text on a hue has a contrast of 4.5 or more.
 """

@@ -11,7 +11,7 @@ class PanelCurve(NamedTuple):
 
     signal: str
     reference_of: str = ""
-    """The signal that should follow it: it is drawn as what is asked for, dashed; empty: it is what is."""
+    """The signal that should follow it: it is drawn as a request, dashed; empty: it is measured."""
     on_page: bool = True
     """On the page and in viewers."""
     in_picture: bool = True
@@ -92,7 +92,7 @@ MODES = ("controller.phase", "controller.prompt", "vehicle.gear", "controller.re
 PICTURE_MODES = ("controller.hsic.characteristic", "controller.preview.stage", "controller.phase")
 """The picture has one ribbon: the first of these that changes during the run."""
 REFERENCES = frozenset(curve.signal for panel in PANELS for curve in panel.curves if curve.reference_of)
-"""Signals that say what is asked for."""
+"""Signals that are requests."""
 
 
 def picture_columns(panels: tuple[Panel, ...] = PANELS) -> list[list[Panel]]:

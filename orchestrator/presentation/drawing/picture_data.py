@@ -10,9 +10,9 @@ from orchestrator.evaluation.verdict.geometry import (
     is_planned,
     kerbs,
     key_points,
+    moving_boxes,
     sample_path,
     slot_box,
-    things,
     vehicle_parameters,
 )
 from orchestrator.evaluation.verdict.summary import Summary, phase_changes
@@ -40,7 +40,7 @@ def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> O
     recording = decimate(recording)
     vehicle = vehicle_parameters(scenario, recording.parameters_of("vehicle"))
     around = Standing(
-        things(vehicle),
+        moving_boxes(vehicle),
         [list(corners) for corners in scenario.obstacles],
         kerbs(vehicle),
         None if scenario.slot is None else slot_box(scenario.slot),

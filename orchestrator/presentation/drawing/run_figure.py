@@ -1,4 +1,4 @@
-"""Figures of runs for a publication: no title, embedded fonts, lines told apart in black and white."""
+"""Figures of runs for a publication: no title, embedded fonts, lines distinct in black and white."""
 
 import re
 from collections.abc import Iterator, Sequence

@@ -109,7 +109,7 @@ def _origin(seen: Overview, signal: str, from_start: bool) -> float:
 
 
 def _reference(seen: Overview, curve: PanelCurve, unit: str) -> Array:
-    """Return what is asked for: a pose blank until one is first given, an angle in the turn of what follows it."""
+    """Return the requested values: a pose blank until one is first given, an angle in the turn of what follows it."""
     values = seen.signal(curve.signal)
     group, _, name = curve.signal.rpartition(".")
     if name in ("x", "y", "heading"):

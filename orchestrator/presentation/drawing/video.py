@@ -34,7 +34,7 @@ INCHES = (12.8, 7.2)
 PLAN, CURVES = (0.05, 0.33, 0.93, 0.58), ((0.06, 0.08, 0.4, 0.17), (0.56, 0.08, 0.4, 0.17))
 """Axes of the top view and of the two curves, as shares of the picture."""
 MAX_OUTLINES = 60
-"""So many outlines of the car along its way have room in the top view."""
+"""So many outlines of the car along its path have room in the top view."""
 LAST_FRAME_TIME = 1.0
 """The last frame is seen so long [s]."""
 NO_FFMPEG = "an .mp4 is written by the program ffmpeg, which is not on the PATH: install it, or write a .gif"
@@ -104,8 +104,8 @@ class _Moving:
         self._seen = seen
         self._plan = figure.add_axes(PLAN)
         self._plan.set_aspect("equal", adjustable="datalim")
-        self._passing = [box for box in seen.around.things if box.comes_or_goes]
-        draw_scene(self._plan, seen, [box for box in seen.around.things if not box.comes_or_goes])
+        self._passing = [box for box in seen.around.boxes if box.comes_or_goes]
+        draw_scene(self._plan, seen, [box for box in seen.around.boxes if not box.comes_or_goes])
         x, y = seen.signal("vehicle.pose.x"), seen.signal("vehicle.pose.y")
         self._plan.plot(x, y, alpha=0.0)
         rows = np.linspace(0, len(seen.t) - 1, MAX_OUTLINES).astype(int)
@@ -226,7 +226,7 @@ def _write_mp4(path: Path, frames: Iterator[Array], rate: float) -> int:
 
 
 def _feed(pipe: IO[bytes], first: Array, frames: Iterator[Array]) -> int:
-    """Send frames through a pipe as long as somebody reads; return how many."""
+    """Send frames through a pipe as long as a reader is there; return how many."""
     count = 0
     try:
         for pixels in (first, *frames):

@@ -1,4 +1,4 @@
-"""A scenario as a system for other tools: what can be told them, and what cannot."""
+"""A scenario as a system for other tools: what can be written for them, and what cannot."""
 
 from collections.abc import Iterable
 from pathlib import Path

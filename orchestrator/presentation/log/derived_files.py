@@ -10,7 +10,7 @@ EXPORTS = (".csv", ".mf4", ".rrd")
 
 
 def clear(log: Path) -> None:
-    """Remove what was made of an earlier log in the place of ``log``, and say so of what no run makes anew."""
+    """Remove what was made of an earlier log in the place of ``log``, and warn of what no run makes again."""
     exports = [log.with_suffix(suffix).name for suffix in EXPORTS]
     found = [name for name in (*MADE_OF_A_LOG, *exports) if (log.parent / name).is_file()]
     for name in found:

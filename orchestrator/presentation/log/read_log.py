@@ -47,7 +47,7 @@ VARIABLES = "variables"
 CHECKSUM = "checksum"
 """Key of a metadata record: the checksum of its other values."""
 RECOVERED = "recovered"
-"""Metadata record that says what a mended log lacks."""
+"""Metadata record of what a repaired log lacks."""
 NO_MEANING = (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, RecursionError, struct.error)
 
 
@@ -77,7 +77,7 @@ def read_log(path: Path) -> Recording:
         raise no_layout(error, path) from error
     lacks = recording.info.get(RECOVERED, {}).get("lacks")
     if lacks:
-        say(f"apa: warning: {path}: is a mended log; it lacks {lacks}")
+        say(f"apa: warning: {path}: is a repaired log; it lacks {lacks}")
     return recording
 
 
@@ -90,7 +90,7 @@ def no_layout(error: Exception, path: Path) -> BadInput:
 def scan_log(path: Path, handler_of: Callable[[Any], Handler | None]) -> dict[str, dict[str, str]]:
     """Go through a log and hand over its messages in order; return its metadata by name.
 
-    ``handler_of`` is asked for each channel. Raises ``BadInput`` for a damaged log, with the place.
+    ``handler_of`` is called for each channel. Raises ``BadInput`` for a damaged log, with the place.
     """
     metadata: dict[str, dict[str, str]] = {}
     channels = _Channels(handler_of)

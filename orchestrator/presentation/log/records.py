@@ -234,7 +234,7 @@ def _chunk_bytes(piece: RawRecord, budget: int) -> bytes:
     if int.from_bytes(piece.body[at : at + 8], "little") != len(packed):
         raise Damage(piece.at, "a chunk has another length than it says")
     if size > min(budget, MAX_CHUNK_BYTES):
-        raise Damage(piece.at, f"a chunk says it unpacks to {size} bytes, more than a log may have")
+        raise Damage(piece.at, f"a chunk is declared to unpack to {size} bytes, more than a log may have")
     data = _decompress(piece.at, compression, packed, size)
     if len(data) != size or (crc and zlib.crc32(data) != crc):
         raise Damage(piece.at, "the checksum of a chunk is wrong")

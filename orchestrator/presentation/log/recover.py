@@ -1,4 +1,4 @@
-"""Mending a log: everything that is whole is written to a new one, and what is not is told by its place."""
+"""Repairs a log: all whole records are written to a new one, and the others are reported by their place."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,7 +31,7 @@ from orchestrator.presentation.log.records import (
 CHUNK_MARK = b"\x04\x00\x00\x00zstd"
 """How the compression of a chunk is written: by this the next one is found where lengths are damaged."""
 MARK_AT = HEAD.size + 28
-MOST_TOLD = 20
+MOST_LISTED = 20
 KNOWN = frozenset(int(code) for code in Opcode)
 
 
@@ -39,7 +39,7 @@ class RecoveryResult(NamedTuple):
     """What came out of a log."""
 
     path: Path
-    """The mended log; the log itself if it was whole."""
+    """The repaired log; the log itself if it was whole."""
     messages: int
     last_ns: int
     complete: bool
@@ -171,8 +171,8 @@ class _Copier:
         if not self.lost:
             self._check_all(data)
         if self.lost:
-            more = f" and {len(self.lost) - MOST_TOLD} more" if len(self.lost) > MOST_TOLD else ""
-            lacks = {"lacks": "; ".join(self.lost[:MOST_TOLD]) + more}
+            more = f" and {len(self.lost) - MOST_LISTED} more" if len(self.lost) > MOST_LISTED else ""
+            lacks = {"lacks": "; ".join(self.lost[:MOST_LISTED]) + more}
             self._writer.add_metadata(RECOVERED, with_checksum(lacks))
         self._writer.finish()
 

@@ -68,7 +68,7 @@ def _structure(items: list[tuple[str, int]]) -> Any:
 
 
 def _is_regular(content: Any) -> bool:
-    """Return whether every list has elements alike, that are no lists, and no name means two things."""
+    """Return whether every list has elements alike, that are no lists, and no name has two meanings."""
     if isinstance(content, list):
         return (
             len({_shape(item) for item in content}) == 1

@@ -38,7 +38,7 @@ def charts_of_models(models: Sequence[Model]) -> list[ChartData]:
 
 
 def charts_of(recording: Recording) -> list[dict[str, Any]]:
-    """Return the charts of the system that a recorded run was made with; none for a controller of somebody else's."""
+    """Return the charts of the system that a recorded run was made with; none for a third-party controller."""
     system = recording.parameters.get(f"controller.{CHOICE}")
     known = _standalone_charts() if system in [int(choice) for choice in APART.values()] else _system_charts()
     return [

@@ -18,7 +18,7 @@ from orchestrator.simulation.cosim.recording import Recording
 CHART = "controller.phase"
 MOST_RIBBONS = 7
 ASKED = frozenset(name.partition(".")[2] for name in REFERENCES)
-"""Names, without their instance, of what is asked for: an output and the input it feeds are one curve."""
+"""Names, without their instance, of requests: an output and the input it feeds are one curve."""
 
 ROWS_PER_PLAN = 40
 """A page of fewer rows has fewer plans, too: one for so many rows."""

@@ -1,1 +1,1 @@
-"""Runs at the pace of the clock on the wall: how late they are, who looks on, what is changed meanwhile."""
+"""Runs in real time: their delay, their viewers, and changes of values meanwhile."""

@@ -1,4 +1,4 @@
-"""The door of a live run: lets viewers in, and no page of somebody else's that a browser happens to show.
+"""The door of a live run: lets viewers in, and no foreign page that a browser happens to show.
 
 A browser says of which page a connection is (``Origin``); the server of the viewer protocol does not look at it. So it
 listens at a loopback address that nobody can guess, and this door, at the address that is announced, looks first.
@@ -32,7 +32,7 @@ def hidden_host() -> str:
 
 
 def is_welcome(head: bytes, allowed: Iterable[str] = VIEWERS) -> bool:
-    """Return whether a request is of a viewer: to this machine by its name, and of no page of somebody else's."""
+    """Return whether a request is of a viewer: to this machine by its name, and of no foreign page."""
     lines = head.decode("latin-1").split("\r\n")
     if not lines[0].startswith("GET ") or not lines[0].endswith(" HTTP/1.1"):
         return False
@@ -120,7 +120,7 @@ def _head_of(outer: socket.socket) -> bytes:
 
 
 def _pass_on(source: socket.socket, target: socket.socket) -> None:
-    """Hand over what comes until there is nothing more, and say so."""
+    """Hand over what comes until there is nothing more, and signal the end."""
     with suppress(OSError):
         while part := source.recv(READ_BYTES):
             target.sendall(part)

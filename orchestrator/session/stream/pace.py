@@ -1,4 +1,4 @@
-"""A run held back to the pace of the clock on the wall, and how late it was."""
+"""A run held back to real time, and its delay."""
 
 import time
 from array import array

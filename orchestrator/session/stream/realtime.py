@@ -1,4 +1,4 @@
-"""What a run has besides when it goes by the clock on the wall: its pace, and a stream of it."""
+"""What a run in real time has besides: its pace, and a stream of it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -49,7 +49,7 @@ class Realtime:
 
 
 class _Ticks:
-    """Observer that tells somebody the simulated time."""
+    """Observer that reports the simulated time."""
 
     def __init__(self, tell: Callable[[int], None]) -> None:
         self.on_communication_point = tell

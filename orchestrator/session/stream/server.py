@@ -123,7 +123,7 @@ class LiveChannels:
             made.log(data, log_time=t_ns)
 
     def refuse(self, why: str) -> None:
-        """Show somebody why a value is not taken."""
+        """Show a viewer why a value is not taken."""
         self._server.publish_status(why, self._foxglove.StatusLevel.Error)
 
 

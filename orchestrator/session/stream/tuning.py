@@ -28,7 +28,7 @@ class _Wish(NamedTuple):
 
 
 class Tuning:
-    """Observer that gives the models what was asked for since the last exchange, and says so in the log."""
+    """Observer that gives the models the values requested since the last exchange, and logs them."""
 
     def __init__(
         self, instances: Sequence[FmuInstance], models: Mapping[str, Model], say: Callable[[int, int, str, str], None]

@@ -44,7 +44,7 @@ def bundle_wires(wires: list[Wire]) -> list[Connection]:
 
 
 def part_of_instance(instance: FmuInstance) -> Part:
-    """Return an instance as far as connecting it goes: without what is only told under its name."""
+    """Return an instance as far as connecting it goes: without what is only reported under its name."""
     unsaid = instance.inputs.unsaid | instance.outputs.unsaid
     inputs = instance.inputs.variables[: instance.inputs.own]
     return Part(instance.name, inputs, instance.outputs.variables, unsaid)

@@ -132,8 +132,9 @@ def receivers(faults: list[Fault], master: CoSimulation, file: object = None) ->
     for count, fault in enumerate(faults):
         key = f"faults[{count + 1}]"
         fault.check(file, key)
-        heard = _receivers(fault.signal, master, file, f"{key}.signal")
-        found += [(count, instance, places) for instance, places in heard]
+        found += [
+            (count, instance, places) for instance, places in _receivers(fault.signal, master, file, f"{key}.signal")
+        ]
     return found
 
 
@@ -181,10 +182,9 @@ def _receivers(signal: str, master: CoSimulation, file: object, key: str) -> lis
         for source, target in zip(link.source_places.tolist(), link.target_places.tolist(), strict=True):
             if instances[link.source] is own and source in sent and target < instances[link.target].inputs.own:
                 places.setdefault(link.target, set()).add(target)
-    heard = [(number, sorted(places[number])) for number in sorted(places)]
-    if not heard:
+    if not places:
         raise BadInput(f"{signal} is not an input of any component", file=file, key=key)
-    return heard
+    return [(number, sorted(places[number])) for number in sorted(places)]
 
 
 def _matching(names: list[str], wanted: str) -> list[int]:

@@ -45,13 +45,13 @@ class Ports:
         self.scales = scales
         """Unit -> what it is in SI base units, as far as the FMU defines its units."""
         self.direct: Mapping[str, Collection[str]] = MappingProxyType({})
-        """Output -> inputs it depends on directly, as far as the FMU says so."""
+        """Output -> inputs it depends on directly, as far as the FMU declares it."""
         self.unsupported: list[str] = []
         """Variables of types that are not supported here, each with its type."""
         self.used: Indices = np.empty(0, dtype=np.intp)
         """Places of the outputs that something is made of: an input, a role, a verdict."""
         self.own = len(variables)
-        """How many of the variables the model has; those after them are told under its name only."""
+        """How many of the variables the model has; those after them are reported under its name only."""
         self.names = [variable.name for variable in variables]
         self.index = {name: place for place, name in enumerate(self.names)}
         self.values: Array = np.array([float(variable.start) for variable in variables], dtype=np.float64)

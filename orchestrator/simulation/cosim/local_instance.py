@@ -199,7 +199,7 @@ class LocalInstance:
             self._directory = ""
 
     def _status_error(self, what: str, status: int, text: str = "no message") -> RunError:
-        """Note the status, which decides what may still be called, and return the error that says so."""
+        """Note the status, which decides what may still be called, and return the error of it."""
         self._worst = max(self._worst, status)
         return RunError(f"{self.name} {what}: {self._last_message or text}")
 

@@ -64,16 +64,16 @@ def read_description(path: Path) -> ModelDescription:
 
 def _with_fixed_parameters(path: Path) -> io.BytesIO:
     """Return an archive with the description alone, in which parameters are fixed that are said to vary, or not said
-    not to: so PythonFMU writes them unless it is told."""
+    not to: so PythonFMU writes them by default."""
     with zipfile.ZipFile(path) as archive:
         tree = etree.fromstring(archive.read(DESCRIPTION), etree.XMLParser(resolve_entities=False))
     for item in tree.iter("ScalarVariable"):
         if item.get("causality") in PARAMETERS and item.get("variability", "continuous") == "continuous":
             item.set("variability", "fixed")
-    mended = io.BytesIO()
-    with zipfile.ZipFile(mended, "w") as archive:
+    repaired = io.BytesIO()
+    with zipfile.ZipFile(repaired, "w") as archive:
         archive.writestr(DESCRIPTION, etree.tostring(tree))
-    return mended
+    return repaired
 
 
 def ports_of(description: ModelDescription, causality: str, model: Model | None, path: Path) -> Ports:
@@ -157,7 +157,7 @@ def shape_of(variable: ModelVariable) -> tuple[int, ...]:
 
 
 def dependencies(description: ModelDescription) -> dict[str, set[str]]:
-    """Return output -> inputs on which it depends directly, for the outputs of which the FMU says so."""
+    """Return output -> inputs on which it depends directly, for the outputs that declare them."""
     inputs = {item.name for item in description.modelVariables if item.causality == "input"}
     return {
         item.variable.name: {other.name for other in item.dependencies} & inputs

@@ -244,7 +244,7 @@ def _dtype_of(values: Array) -> int:
 
 
 class BlockSignals(Mapping[str, Array]):
-    """Stored signals from one row up to another: each is read when it is asked for."""
+    """Stored signals from one row up to another: each is read on demand."""
 
     def __init__(self, blocks: SignalBlocks, first: int = 0, end: int | None = None) -> None:
         self._blocks = blocks

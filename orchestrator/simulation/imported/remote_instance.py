@@ -292,8 +292,8 @@ class _Process:
         self._over = threading.Event()
         threading.Thread(target=self._watch, daemon=True).start()
 
-    def ask(self, order: bytes, data: bytes, limit: float, heard: Callable[[int, str], None]) -> None:
-        """Wait until an order is done; messages that come before that go to ``heard``."""
+    def ask(self, order: bytes, data: bytes, limit: float, on_message: Callable[[int, str], None]) -> None:
+        """Wait until an order is done; messages that come before that go to ``on_message``."""
         begun = time.monotonic()
         self._deadline = begun + min(limit, self._left)
         self._number += 1
@@ -308,7 +308,7 @@ class _Process:
                 what, status, text = answer_of(letter, answer)
                 if letter == worker.REFUSED:
                     raise _NoAnswerError(f"{what}: {text or 'no message'}".replace("{", "{{").replace("}", "}}"))
-                heard(status, text)
+                on_message(status, text)
         except (OSError, EOFError):
             raise self._exit_error(limit) from None
         except worker.ForeignAnswerError:

@@ -1,7 +1,7 @@
 """The process of one FMU: takes orders on its standard input, answers on what was its standard output.
 
 A message is one letter, the number of the order, the length of what follows, and that: JSON, or nothing. An answer
-has the number of its order, which begins anywhere and which no FMU is told, so what an FMU writes into the pipe is no
+has the number of its order, which begins anywhere and which no FMU knows, so what an FMU writes into the pipe is no
 answer. Numbers lie in a file that both have in their memory: time and step, the inputs, the outputs, as doubles.
 Imports nothing but the standard library and ``fmi_calls``, so that a process is there in 30 ms.
 
@@ -98,7 +98,7 @@ class Worker:
         self._shared: Any = None
 
     def serve(self) -> None:
-        """Do what is asked until there is nobody who asks."""
+        """Carry out orders until the pipe is closed."""
         orders: dict[bytes, Callable[[bytes], None]] = {
             LOAD: self._load,
             PARAMETERS: self._parameters,

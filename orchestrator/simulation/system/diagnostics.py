@@ -27,7 +27,7 @@ NEEDED_INPUTS = {"vehicle": ("steering_wheel_request", "steering_active")}
 NOTE = "note: "
 """Begins a line that is no warning."""
 SPARE = ("manual.", "external_slot.", "driver_selection.")
-"""Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
+"""Inputs of these groups need no source: their start values mean no driver action and no external slot."""
 MAX_NAMES = 12
 """A line that names more is not read."""
 MAX_LETTERS = 100
@@ -217,17 +217,17 @@ def loops(system: ElaboratedSystem) -> list[str]:
 
 
 def _cycles(start: Node, ahead: dict[Node, list[Node]]) -> Iterator[list[Node]]:
-    """Yield the first way from an output back to itself, if there is one."""
-    ways, seen = [[start]], {start}
-    while ways:
-        way = ways.pop()
-        for following in ahead.get(way[-1], ()):
+    """Yield the first route from an output back to itself, if there is one."""
+    routes, seen = [[start]], {start}
+    while routes:
+        route = routes.pop()
+        for following in ahead.get(route[-1], ()):
             if following == start:
-                yield way
+                yield route
                 return
             if following not in seen:
                 seen.add(following)
-                ways.append([*way, following])
+                routes.append([*route, following])
 
 
 def _loop(cycle: list[Node], instances: Sequence[FmuInstance]) -> str:

@@ -67,7 +67,7 @@ MIN_SCORE, SURE_SCORE = 0.45, 0.6
 MAX_OTHERS = 2
 """Further signals that a suggestion names."""
 REQUEST = "request"
-"""Every input of a vehicle is one, whether its name says so or not."""
+"""Every input of a vehicle is one, whatever its name."""
 NAME_SHARE = 0.7
 """Weight of the names against that of the descriptions."""
 USUAL_BONUS = 0.05
@@ -94,7 +94,7 @@ class Suggestion(NamedTuple):
     target: str
     """Input, with its component."""
     source: str
-    """Output, with its component; ``-`` before it where descriptions count opposite ways."""
+    """Output, with its component; ``-`` before it where descriptions count in opposite directions."""
     score: float
     """0 to 1."""
     others: tuple[str, ...]

@@ -1,7 +1,7 @@
 """What the bake-off drives: controllers, slots, cars, starts, bodies, disturbances, as scenarios.
 
 Every slot lies between two parked cars before a wall; its target has the car flush with the neighbours.
-The papers' controllers are told slot, target and start. The parking assist is told nothing: it drives past
+The papers' controllers receive slot, target and start. The parking assist receives nothing: it drives past
 along the line through the same start pose, finds the slot with its sensors and chooses its own target.
 """
 
@@ -23,7 +23,7 @@ SLOTS = (6.2, 7.7, 9.2)
 """Lengths [m]."""
 CARS = ("guo2015", "zhang2022")
 BODIES = ("kinematic", "double_track")
-STARTS = {"near": (1.15, 3.0, 0.0), "far": (2.05, 2.8, 0.0), "crooked": (2.05, 2.8, 2.0)}
+STARTS = {"near": (1.15, 3.0, 0.0), "far": (2.05, 2.8, 0.0), "yawed": (2.05, 2.8, 2.0)}
 """Start pose: x ahead of the slot's front end [m], y from the target [m], heading [deg]."""
 DISTURBANCES: dict[str, dict[str, float]] = {
     "none": {},

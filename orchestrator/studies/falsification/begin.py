@@ -24,7 +24,7 @@ from orchestrator.studies.sweep.study.study import Study
 
 
 def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
-    """Return the falsification. Raises ``BadInput``, also for runs of another falsification that are in the way."""
+    """Return the falsification. Raises ``BadInput``, also for runs of another falsification in the folder."""
     if study.scenario.system is not None:
         text = "a falsification runs our models, or with --controller one FMU in the place of ours; leave out"
         raise BadInput(text, file=study.scenario.file, key="system")
@@ -68,7 +68,7 @@ def _task(study: Study, arguments: argparse.Namespace) -> ChunkTask:
 
 
 def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
-    """Return one row of measures per run of ``chunk`` with FMUs of somebody else's; what they do not tell is NaN."""
+    """Return one row of measures per run of ``chunk`` with third-party FMUs; what they do not report is NaN."""
     foreign = ImportedFmus({name: Path(path) for name, path in files.items()})
     own = {instance: parameters_of(path, instance) for instance, path in foreign.files.items()}
 

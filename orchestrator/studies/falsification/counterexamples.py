@@ -30,7 +30,7 @@ BITS = ("duration", "min_clearance", "final.x", "final.y", "final.heading", "ste
 
 
 class Counterexample(NamedTuple):
-    """A run that breaks the requirement, and the mildest one it was shrunk to."""
+    """A run that breaks the requirement, and the minimal counterexample it was shrunk to."""
 
     name: str
     run: Seed

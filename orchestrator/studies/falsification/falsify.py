@@ -38,7 +38,7 @@ class FalsificationResult(NamedTuple):
     """Runs that broke the requirement, in all stages."""
     first_after: int | None
     """Runs until the first of them."""
-    lot: tuple[int, int]
+    sample: tuple[int, int]
     """Of independent runs: how many broke it, and how many there were."""
     bound: tuple[float, float]
     """95 % each: the probability is above, and below."""
@@ -57,24 +57,24 @@ def falsify(subject: Subject, budget: int, seed: int, folder: Path) -> Falsifica
         downs = _downhill(subject, spread, _part(budget, DOWNHILL), seed)
         if first is None and downs:
             first = subject.runs
-        subject.stage = "by lot"
+        subject.stage = "random runs"
         before = subject.runs
-        lot = monte_carlo(subject, _part(budget, BY_LOT), seed)
-        first = _first_broken(lot, before) if first is None else first
+        sample = monte_carlo(subject, _part(budget, BY_LOT), seed)
+        first = _first_broken(sample, before) if first is None else first
         subject.stage = "which factors matter"
-        influences = _influences(subject, spread, lot, _part(budget, TOTALS), seed)
+        influences = _influences(subject, spread, sample, _part(budget, TOTALS), seed)
         subject.stage = "how rare"
-        rare = _rare(subject, lot, _part(budget, RARE), seed)
+        rare = _rare(subject, sample, _part(budget, RARE), seed)
         subject.stage = "shrinking"
         counterexamples = _counterexamples(
-            subject, [*downs, *spread.broken(), *lot.broken()], seed, subject.runs + budget
+            subject, [*downs, *spread.broken(), *sample.broken()], seed, subject.runs + budget
         )
         for counterexample in counterexamples:
             write_counterexample(subject, counterexample, folder)
-    events = int((lot.margins <= 0.0).sum())
-    bound = clopper_pearson(events, len(lot.margins))
+    events = int((sample.margins <= 0.0).sum())
+    bound = clopper_pearson(events, len(sample.margins))
     return FalsificationResult(
-        counterexamples, subject.runs, subject.broken, first, (events, len(lot.margins)), bound, rare, influences
+        counterexamples, subject.runs, subject.broken, first, (events, len(sample.margins)), bound, rare, influences
     )
 
 
@@ -98,32 +98,32 @@ def _downhill(subject: Subject, spread: Drawn, budget: int, seed: int) -> list[S
     return found
 
 
-def _influences(subject: Subject, spread: Drawn, lot: Drawn, budget: int, seed: int) -> list[SobolIndices]:
+def _influences(subject: Subject, spread: Drawn, sample: Drawn, budget: int, seed: int) -> list[SobolIndices]:
     """Return the influences, the strongest first; totals of those that matter most at first sight."""
     names = [factor.name for factor in subject.space.factors]
-    shares, margins = np.concatenate([spread.shares, lot.shares]), np.concatenate([spread.margins, lot.margins])
+    shares, margins = np.concatenate([spread.shares, sample.shares]), np.concatenate([spread.margins, sample.margins])
     firsts = first_orders(shares, margins, seed)
     order = sorted(range(len(names)), key=lambda number: -firsts[number].value)
     singles = order[:MOST_TOTALS]
     groups = {names[number]: [number] for number in singles} | {OTHERS: order[MOST_TOTALS:], NOISE: []}
     groups = {name: members for name, members in groups.items() if members or name == NOISE}
-    count = min(len(lot.margins), max(4, budget // len(groups)))
+    count = min(len(sample.margins), max(4, budget // len(groups)))
     rng = np.random.default_rng([seed, 7])
     other, seeds = rng.random((count, len(names))), rng.integers(1, LAST_SEED, count)
-    own, variance = lot.margins[:count], float(np.var(margins))
+    own, variance = sample.margins[:count], float(np.var(margins))
     totals = {}
     for name, members in groups.items():
-        changed: Array = lot.shares[:count].copy()
+        changed: Array = sample.shares[:count].copy()
         changed[:, members] = other[:, members]
-        drawn = seeds if name == NOISE else lot.seeds[:count]
+        drawn = seeds if name == NOISE else sample.seeds[:count]
         totals[name] = total_index(own, subject.margins(changed, drawn), variance, seed)
     found = [SobolIndices(names[number], firsts[number], totals.get(names[number])) for number in order]
     return [*found, *(SobolIndices(name, None, totals[name]) for name in (OTHERS, NOISE) if name in totals)]
 
 
-def _rare(subject: Subject, lot: Drawn, budget: int, seed: int) -> SubsetSimulation | None:
+def _rare(subject: Subject, sample: Drawn, budget: int, seed: int) -> SubsetSimulation | None:
     """Return the estimate for a rare event; None where independent runs have met it often enough, or few are left."""
-    often = (lot.margins <= 0.0).sum() >= MIN_VIOLATIONS
+    often = (sample.margins <= 0.0).sum() >= MIN_VIOLATIONS
     level = budget // 3
     if often or level < LEAST_LEVEL:
         return None

@@ -34,7 +34,7 @@ def as_json(subject: Subject, result: FalsificationResult) -> dict[str, Any]:
         "runs": result.runs,
         "broken": result.broken,
         "first_after": result.first_after,
-        "independent": {"runs": result.lot[1], "broken": result.lot[0]},
+        "independent": {"runs": result.sample[1], "broken": result.sample[0]},
         "probability": {"above": result.bound[0], "below": result.bound[1], "confidence": 0.95},
         "subset_simulation": None if result.rare is None else result.rare._asdict(),
         "influences": [
@@ -75,7 +75,7 @@ def counterexamples_text(subject: Subject, result: FalsificationResult) -> list[
 
 def bound_text(result: FalsificationResult) -> list[str]:
     """Return what the runs prove."""
-    events, count = result.lot
+    events, count = result.sample
     low, high = result.bound
     lines = [f"{events} of {count} independent runs break it: probability {_between(low, high)} (95 % each, exact)"]
     if result.rare is not None and result.rare.is_bound:
@@ -133,7 +133,7 @@ def _counterexamples(subject: Subject, result: FalsificationResult) -> str:
                 f"{100.0 * counterexample.chance:.0f} %",
             )
         )
-    text = "Each with as few disturbances as may be, each as mild as may be (in brackets: nominal). Run one: "
+    text = "Each with the fewest and smallest disturbances (in brackets: nominal). Run one: "
     text += "<code>apa run counterexamples/NAME.yaml</code>; the same bits as when it was found."
     heads = ("scenario", "what happens", "what it needs", "of other seeds")
     return CARD.format(title="Finds", text=text if rows else "None.", inner=_table(heads, rows) if rows else "")

@@ -48,7 +48,7 @@ class Drawn(NamedTuple):
 
 
 def global_sampling(subject: Subject, count: int, seed: int) -> Drawn:
-    """Return ``count`` runs of a scrambled Sobol sequence, seeds by lot."""
+    """Return ``count`` runs of a scrambled Sobol sequence with random seeds."""
     rng = np.random.default_rng([seed, 1])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # its balance asks for powers of two

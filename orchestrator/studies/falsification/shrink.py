@@ -1,4 +1,4 @@
-"""The mildest run that still breaks: as few factors off their nominal values as may be, each as little as may be."""
+"""The minimal counterexample: the fewest factors off their nominal values, each by the least."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ SEED_TRIALS = 32
 
 
 def shrink(subject: Subject, found: Seed) -> Seed:
-    """Return the mildest run found from ``found`` on, with its own seed; it breaks as well."""
+    """Return the minimal counterexample from ``found`` on, with its own seed; it breaks as well."""
     nominal = subject.space.nominal()
     best = _fewest(subject, found, nominal)
     for factor in away(subject.space, best.shares):

@@ -25,7 +25,7 @@ from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Seeds, Space
 from orchestrator.studies.sweep.study.study import Columns, Objective, Study
-from orchestrator.studies.sweep.verdict import judge_rows, limit_value, things, values_in
+from orchestrator.studies.sweep.verdict import judge_rows, limit_value, quantities, values_in
 
 CHUNKS_PER_WORKER = 4
 """Chunks of a batch for each worker."""
@@ -136,7 +136,7 @@ def _margins(objective: Objective, job: Job, chunk: Chunk, rows: Array, columns:
     truth = truths(job, chunk)
     scenario = Scenario(**job.scenario)
     results = judge_rows(scenario, truth, job.measures, rows).numbers
-    has = truth.has() | things(scenario, results)
+    has = truth.has() | quantities(scenario, results)
     found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
     margins = []
     for limit in objective.limits:

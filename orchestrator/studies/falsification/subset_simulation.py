@@ -3,7 +3,7 @@
     P(g <= 0) = P(g <= b1) P(g <= b2 | g <= b1) ...    each about p0, the levels b chosen on the way
 
 Of the runs of a level the share p0 with the least margin are the seeds of the next one's chains (Metropolis, each
-coordinate on its own), which stay below the level. The run's seed is a variable like the others, drawn anew.
+coordinate on its own), which stay below the level. The run's seed is a variable like the others, sampled independently.
 """
 
 import math

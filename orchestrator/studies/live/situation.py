@@ -85,7 +85,7 @@ def _faults(scenario: Scenario) -> dict[str, Any]:
     return {
         "said": [_fault_text(fault) for fault in scenario.faults],
         "when": [[fault.start, fault.stop] for fault in scenario.faults],
-        "heard": [
+        "receivers": [
             [FAULTS.index(kind), model, *places]
             for kind, model, places in (x.inputs for x in fault_receivers(scenario))
         ],

@@ -92,7 +92,7 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
 
 
 def other_path_rows(driven: Driven) -> list[Row]:
-    """Return what the tracking law makes of a path that is not made of arcs; the paper says it can be used there."""
+    """Return what the tracking law makes of a path that is not made of arcs; the paper states its use there."""
     run = driven.summary.scenario
     off = float(np.max(np.abs(driven.recording.signals["controller.lateral_error"])))
     return [

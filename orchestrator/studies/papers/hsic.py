@@ -22,7 +22,7 @@ REACHED = {
 """A little over what is reached: heading [deg] and lateral error [m] at the end, deviation from the tangent [m]."""
 UNTESTED = [
     not_tested("deviation from the common tangent", "a curve without numbers, called small"),
-    not_tested("stage 1: the search for the slot", "no rule of it is in the text; slot and start are told"),
+    not_tested("stage 1: the search for the slot", "no rule of it is in the text; slot and start are given"),
     not_tested("ranging by time of flight, reversing camera", "the sensors tell distances; no stage here uses them"),
     not_tested("how long each of the 12 states lasts", "not printed"),
 ]

@@ -91,7 +91,7 @@ def _ribbon(axis: Any, driven: Driven) -> None:
 
 
 def outlines(axis: Any, driven: Driven, count: int) -> None:
-    """Draw the car ``count`` times along its way, and the cars beside the slot."""
+    """Draw the car ``count`` times along its path, and the cars beside the slot."""
     recording = driven.recording
     p = recording.parameters_of("vehicle")
     x, y, heading = (recording.signals[f"vehicle.pose.{key}"] for key in ("x", "y", "heading"))

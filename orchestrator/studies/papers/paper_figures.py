@@ -175,7 +175,7 @@ SHOWN_AS = {"l1": "L1", "l2": "L2", "wanted_speed": "set speed"}
 
 
 def over_distance(runs: list[Driven], panels: Sequence[tuple[str, str, float]], span: tuple[float, float]) -> Figure:
-    """Return preview signals over the way driven: one panel for each (signal, label, factor)."""
+    """Return preview signals over the travelled distance: one panel for each (signal, label, factor)."""
     figure, axes = grid_of(len(panels), 1, 6.7, 1.6)
     for axis, (names, label, factor) in zip(axes, panels, strict=True):
         for driven in runs:

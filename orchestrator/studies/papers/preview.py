@@ -194,8 +194,8 @@ def _settling(main: Driven) -> list[Row]:
         bound_row(name, "longest rise or fall of the angle, to 90 %", "s", 2.0, max(risen)),
         Row(name, "longest until it stays within 8 %", "s", None, max(settled), note="reported"),
         bound_row(name, "swing back on the way into curves 3 and 4", "%", 8.0, max(swings[4], swings[6])),
-        bound_row(name, "swing back on the way out of curves 3 and 4", "%", 8.0, max(swings[5], swings[7]), JUMP),
-        Row(name, "swing back on the way out of curve 1", "%", None, swings[1]),
+        bound_row(name, "swing back after curves 3 and 4", "%", 8.0, max(swings[5], swings[7]), JUMP),
+        Row(name, "swing back after curve 1", "%", None, swings[1]),
     ]
 
 

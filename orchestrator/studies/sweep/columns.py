@@ -18,7 +18,7 @@ from orchestrator.studies.sweep.job import Chunk, Job, truths
 from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.imported_fmu import signals_of
 from orchestrator.studies.sweep.study.study import Study
-from orchestrator.studies.sweep.verdict import RESULTS, judge, limit_value, things, values_in
+from orchestrator.studies.sweep.verdict import RESULTS, judge, limit_value, quantities, values_in
 
 WITHIN = "within {}"
 """Name of the column that says whether a run is within a set of limits; one in contact is within none."""
@@ -65,7 +65,7 @@ def fill_columns(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str,
     found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
     touches = np.nan_to_num(verdict.numbers[PENETRATION]) > 0.0
     free = ~touches | study.scenario.contact_allowed
-    has = truth.has() | things(study.scenario, verdict.numbers)
+    has = truth.has() | quantities(study.scenario, verdict.numbers)
     here = slice(chunk.first, chunk.first + len(chunk.seeds))
     given = zip(study.design.fields, chunk.values.T, strict=True)
     values: dict[str, Any] = {

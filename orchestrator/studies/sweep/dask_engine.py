@@ -69,6 +69,6 @@ class DaskEngine:
         """Raise ``BadInput`` if a worker has other sources: its bits could differ."""
         own = sources_hash()
         others = self._client.run(sources_hash)
-        strange = [address for address, found in others.items() if found != own]
-        if strange:
-            raise BadInput(f"{', '.join(strange)} runs another version of this project", key="--dask")
+        different = [address for address, found in others.items() if found != own]
+        if different:
+            raise BadInput(f"{', '.join(different)} runs another version of this project", key="--dask")

@@ -114,7 +114,7 @@ def _theirs(data: dict[str, Any]) -> dict[str, dict[str, Any]]:
 def _controller_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
     """Return (parameter, value) of the controller that follow a target which differs from run to run.
 
-    A controller that was told another target than the scenario's keeps to that.
+    A controller with another target than the scenario's keeps to that.
     """
     reported, true = job.scenario["controller"], job.scenario["target"]
     return [
@@ -154,7 +154,7 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     controls = {item.name: place for place, item in enumerate(variables(scenario.models["controller"].params))}
     for name, values in _controller_targets(job, list(chunk.values.T)):
         parameters[:, starts["controller"] + controls[name]] = values
-    is_told = scenario.stop_time is not None or "stop_time" in job.names
+    is_given = scenario.stop_time is not None or "stop_time" in job.names
     for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):
         values = chunk.values[:, column]
         if owner in MODELS:
@@ -169,7 +169,7 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
             every[name.removeprefix("decimation.")] = values.astype(np.int64)
     for owner, _, place in job.seeded:
         parameters[:, starts[owner] + place] = seeds
-    if not is_told:
+    if not is_given:
         limit = controls.get(DURATION)
         durations = np.full(count, UNLIMITED) if limit is None else parameters[:, starts["controller"] + limit]
         stops = stop_times(_driver_speeds(scenario, parameters), durations)
@@ -221,6 +221,6 @@ def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:
 
 
 def _controller_target(controller: dict[str, Any]) -> dict[str, float]:
-    """Return the target of a table of an older version, which judged by what the controller was told."""
+    """Return the target of a table of an older version, which judged by the controller's target."""
     starts = {item.name: float(item.start) for item in variables(MODELS["controller"].params)}
     return {name: float(controller.get(f"target.{name}", starts[f"target.{name}"])) for name in Target.model_fields}

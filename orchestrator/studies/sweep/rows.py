@@ -118,7 +118,7 @@ CLEARANCE_NUMBER = "min_clearance"
 
 
 def _needs_poses(scenario: Scenario) -> bool:
-    """Return whether contact is told by poses alone: with polygons, or a third-party vehicle."""
+    """Return whether contact is derived from poses alone: with polygons, or a third-party vehicle."""
     return bool(scenario.obstacles) or "vehicle" in files_of(scenario)
 
 

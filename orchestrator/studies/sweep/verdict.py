@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from orchestrator.evaluation.verdict.conditions import CONDITIONS, share
 from orchestrator.evaluation.verdict.measures import Measure
-from orchestrator.evaluation.verdict.numbers import NUMBERS, SPEED, Metric, numbers, things_of
+from orchestrator.evaluation.verdict.numbers import NUMBERS, SPEED, Metric, numbers, quantities_of
 from orchestrator.evaluation.verdict.outcome import Ends, RequiredCheck, outcomes
 from orchestrator.evaluation.verdict.truth import Bools, GroundTruth
 from orchestrator.inputs.scenario.end_condition import state_word, states_of
@@ -64,7 +64,7 @@ def judge_rows(scenario: Scenario, truth: GroundTruth, measures: Sequence[Measur
     for place, values in recorded.items():
         if scenario.requirements[place].signal in (PENETRATION, CLEARANCE_NUMBER):
             results[scenario.requirements[place].signal] = values
-    has = truth.has() | things(scenario, results)
+    has = truth.has() | quantities(scenario, results)
     shares = np.zeros(len(rows))
     asked: list[RequiredCheck] = []
     for place, limit in enumerate(scenario.requirements):
@@ -83,10 +83,10 @@ def judge_rows(scenario: Scenario, truth: GroundTruth, measures: Sequence[Measur
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})
 
 
-def things(scenario: Scenario, results: Mapping[str, Array]) -> dict[str, Bools]:
+def quantities(scenario: Scenario, results: Mapping[str, Array]) -> dict[str, Bools]:
     """Return for each run whether its scenario has polygons, and anything in the scene at all."""
     nearest = results[CLEARANCE_NUMBER]
-    there = things_of(scenario, {})
+    there = quantities_of(scenario, {})
     scene = np.isfinite(nearest) | ("scene" in there)
     return {"obstacles": np.full(len(nearest), "obstacles" in there), "scene": scene}
 

@@ -13,8 +13,8 @@ from orchestrator.inputs.scenario.scenario import Outcome
 from orchestrator.inputs.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.inputs.text.yaml_file import explain, read_mapping
 
-STANDARDS = LIBRARY / "catalogue"
-STEP_TESTS = STANDARDS / "steptests"
+CATALOGUE_FOLDER = LIBRARY / "catalogue"
+STEP_TESTS = CATALOGUE_FOLDER / "steptests"
 NAME = "catalogue"
 """What the catalogue is called where scenarios are named; ``catalogue/gbt*`` are some of its standards."""
 Sure = Literal["text", "secondary", "unverified"]
@@ -98,9 +98,9 @@ def select_standards(words: list[str]) -> list[Standard]:
     patterns = [word.removeprefix(NAME).removeprefix("/") or "*" for word in words]
     found: dict[str, Standard] = {}
     for pattern in patterns:
-        fitting = [path for path in sorted(STANDARDS.glob("*.yaml")) if fnmatchcase(path.stem, pattern)]
+        fitting = [path for path in sorted(CATALOGUE_FOLDER.glob("*.yaml")) if fnmatchcase(path.stem, pattern)]
         if not fitting:
-            known = [path.stem for path in sorted(STANDARDS.glob("*.yaml"))]
+            known = [path.stem for path in sorted(CATALOGUE_FOLDER.glob("*.yaml"))]
             hint = suggestion_or_choices(pattern, known)
             raise BadInput(f"the catalogue has no standard of this name{hint}", key=pattern)
         found |= {path.stem: read_standard(path) for path in fitting}

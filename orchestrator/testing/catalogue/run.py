@@ -33,7 +33,7 @@ class Catalogue:
         return len(self._scenarios) + len(self._tests)
 
     def run(self, sets: list[str], bench: SuiteConfig, out: Path, jobs: int, on_run: Callable[[int], None]) -> None:
-        """Run all; what a run recorded is let go once it is judged. ``on_run`` is told how many are done."""
+        """Run all; what a run recorded is let go once it is judged. ``on_run`` receives how many are done."""
         steps = bench._replace(requirements=[])
         for tests in (run_tests(self._scenarios, sets, bench, out, jobs), run_tests(self._tests, [], steps, out)):
             for tested in tests:

@@ -41,7 +41,7 @@ class Branch(NamedTuple):
 
 
 class Branches:
-    """The branches of some packages, and how often each went which way."""
+    """The branches of some packages, and how often each had which result."""
 
     def __init__(self) -> None:
         self._places: list[tuple[Path, int, str]] = []

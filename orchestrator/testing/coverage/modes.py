@@ -30,7 +30,7 @@ class Modes:
         """Instances that were ours in one test at least."""
 
     def look(self, scenario: Scenario, files: Files, recording: Recording) -> None:
-        """Count what a run has been through; ``files``: instance -> FMU of somebody else's."""
+        """Count what a run has been through; ``files``: instance -> third-party FMU."""
         there = {name.partition(".")[0] for name in recording.signals}
         self.ours |= there & set(scenario.places) - set(files)
         for signal, listed in modes_of(scenario, files, recording).items():
@@ -44,7 +44,7 @@ class Modes:
 
 
 def modes_of(scenario: Scenario, files: Files, recording: Recording) -> dict[str, ModeList]:
-    """Return signal -> what is listed of it, for each mode of a run that an FMU of somebody else's tells."""
+    """Return signal -> what is listed of it, for each mode of a run that a third-party FMU reports."""
     system = scenario.system
     if system is not None and system.modes:
         return {name: listed for name, listed in system.modes.items() if name in recording.signals}

@@ -24,7 +24,7 @@ HEAD = """<header class="top"><div class="headline"><h1>Coverage of charts and c
 <span class="verdict {kind}">{share:.0f} % of the transitions</span>
 <span class="verdict {branch_kind}">{branch_share:.0f} % of the branches</span></header>
 <p class="quiet">Red: never taken, or never visited. Orange: its guard was never false while it decided,
-or nobody has listed it. Of an FMU of somebody else's only a mode is seen.</p>
+or it is in no list. Of a third-party FMU only a mode is seen.</p>
 """
 
 

@@ -18,7 +18,7 @@ class Response(NamedTuple):
     values: Array
     goal: float
     band: float
-    """Share of the way."""
+    """Fraction of the step."""
 
     @property
     def progress(self) -> Array:
@@ -43,7 +43,7 @@ def settling_time(response: Response) -> float:
 
 
 def overshoot(response: Response) -> float:
-    """Return how far the value goes beyond the goal, as a share of the way."""
+    """Return how far the value goes beyond the goal, as a fraction of the step."""
     return max(0.0, float(np.max(response.progress)) - 1.0)
 
 

@@ -99,7 +99,7 @@ def declares_step_test(path: Path) -> bool:
     """Return whether a YAML file declares itself as a step test, so that a test runner of any project may collect it.
 
     ``model:`` names something that can be tested here (``controller``, ``vehicle``, an FMU, ``FILE.py:NAME``) and at
-    least one further key of a step test is there; ``model: resnet50`` of somebody else's file is not.
+    least one further key of a step test is there; ``model: resnet50`` of an unrelated file is not.
     """
     try:
         content = read_mapping(path)

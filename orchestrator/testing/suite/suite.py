@@ -84,13 +84,13 @@ class SuiteConfig(NamedTuple):
     """FmuInstance name -> FMU of ours; those that lack run in process."""
     kind: str
     foreign: ImportedFmus
-    """FMUs of somebody else's in their place: they need not have all parameters."""
+    """Third-party FMUs in their place: they need not have all parameters."""
     requirements: list[tuple[str, list[Requirement]]]
     """(file, its requirements), judged besides the scenario's own limits."""
     interrupt: Interrupt
     warn: Callable[[str], None] = lambda text: None
     look: Callable[[Scenario, Files, Recording], None] = lambda scenario, files, recording: None
-    """Is shown each run with the FMUs of somebody else's in it."""
+    """Receives each run with third-party FMUs in it."""
     started: Mapping[str, Any] = MappingProxyType({})
     """When and by which command the test was started, for the logs."""
 

@@ -17,7 +17,7 @@ TARGET = tuple(f"target.{name}" for name in ("x", "y", "heading"))
 def ssp_scenario(path: Path) -> dict[str, Any]:
     """Return what a scenario file would say of the .ssp at ``path``. Raises ``BadInput``.
 
-    If its controller is told a target, as ours is, that is the scenario's; else the run is one without a task of ours.
+    If its controller receives a target, as ours does, that is the scenario's; else the run has no task of ours.
     """
     system, content = _read(path), {"system": {"ssp": str(path)}}
     reported = system.parameters.get("controller", {})

@@ -103,7 +103,7 @@ class Plot {
     return { size: 96, incrs: [1, 2, 5, 10], values: (u, marks) => marks.map((mark) => (mark in states ? words(run.stateName(name, mark)) : "")) };
   }
 
-  // Several runs: the colour is the run, the dashes are the signal. One run: blue is what is, violet dashes what is asked.
+  // Several runs: the colour is the run, the dashes are the signal. One run: blue is measured, violet dashes are requests.
   stroke({ number, name }) {
     if (this.page.runs.length > 1) return runColor(number);
     return this.isAsked(name) ? color("asked") : color(INKS[this.rank(name) % INKS.length]);

@@ -1,4 +1,4 @@
-// All curves over time, drawn by uPlot: one pair of cursors and one zoom for all.
+// All curves over time, in uPlot: one pair of cursors and one zoom for all.
 
 class Plots {
   // `seek(t)`: go there; `look(t)`: the pointer is there, null: on no curve.

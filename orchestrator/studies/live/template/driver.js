@@ -90,7 +90,7 @@ function driverKeys(driver) {
   addEventListener("blur", () => driver.release());
 }
 
-// Short tones when the prompt changes; off until somebody switches them on.
+// Short tones when the prompt changes; off until they are switched on.
 class Sounds {
   constructor() { this.isOn = false; }
 

@@ -46,12 +46,12 @@ class Course {
     this.seen = seen;
     this.kept = data.measures.length;
     const place = (name) => engine.places.get(name), bits = (values) => values.reduce((sum, value) => sum + 2 ** value, 0);
-    const { heard } = data.faults, inputs = heard.flatMap(([, , ...places]) => places);
-    const numbers = [bits(data.ending.final), data.ending.still, data.ending.standstill_ns, ...place(data.ending.mode), ...place(data.ending.speed), this.kept, seen.length, heard.length, inputs.length];
+    const { receivers } = data.faults, inputs = receivers.flatMap(([, , ...places]) => places);
+    const numbers = [bits(data.ending.final), data.ending.still, data.ending.standstill_ns, ...place(data.ending.mode), ...place(data.ending.speed), this.kept, seen.length, receivers.length, inputs.length];
     for (const [how, name, mode, values] of data.measures)
       numbers.push(HOW.indexOf(how), ...place(name), ...(mode ? place(mode) : [0, 0, 0]), mode ? bits(values) : 0);
     for (const name of seen) numbers.push(...place(name));
-    for (const [kind, model, ...places] of heard) numbers.push(kind, model, places.length, ...places);
+    for (const [kind, model, ...places] of receivers) numbers.push(kind, model, places.length, ...places);
     const address = engine.put(numbers);
     this.live = this.c.live_open(address);
     this.c.live_free(address);

@@ -15,7 +15,7 @@ class Page {
   show = () => {};
   took = 0; // until the page was ready [ms]
   computed = 0; // when the ghost was last computed [ms]
-  told = 0; // when numbers and words were last written [ms]
+  shownAt = 0; // when numbers and words were last written [ms]
 
   constructor(lab, data, code) {
     this.lab = lab;
@@ -126,8 +126,8 @@ class Page {
     this.key = key;
     if (!drive.history.time.length) return;
     this.stage.draw(drive.t);
-    if (drive.isPlaying && now - this.told < WORDS_EVERY) return;
-    this.told = now;
+    if (drive.isPlaying && now - this.shownAt < WORDS_EVERY) return;
+    this.shownAt = now;
     headsUp(this.drawn, drive.t);
     this.chart.show(drive.history, drive.t);
     this.chart.decide(drive);

@@ -19,7 +19,7 @@ class Situation {
         const states = mode ? model.states[mode] : null;
         this.known.set(full, { name: full, unit, text, kind, low, high, states, source, place: place++, start: given === undefined ? start : Number(given) });
       }
-    this.roots = new Map(); // parameter that is told -> what it is told
+    this.roots = new Map(); // parameter -> value in the controller
     for (const name of AXES) if (data.target) this.tell(truth("target", name, data.target[name]), [`controller.target.${name}`]);
     for (const name of SLOT) if (data.slot) this.tell(truth("slot", name, data.slot[name]), []);
     this.layout = data.layout;
@@ -32,7 +32,7 @@ class Situation {
     for (const [name, value] of Object.entries(changes)) this.set(name, value);
   }
 
-  // What is true once and told to models: those that are told something else keep it.
+  // Ground truth that models receive: those with another value keep it.
   tell(item, receivers) {
     this.known.set(item.name, item);
     for (const name of receivers) if (this.known.has(name) && this.known.get(name).start === item.start) this.roots.set(name, item.name);
@@ -85,7 +85,7 @@ class Situation {
     return "";
   }
 
-  // Change a parameter; returns what is wrong with the value. A target that is moved is told to the controller.
+  // Change a parameter; returns what is wrong with the value. A moved target is given to the controller.
   set(name, value) {
     const wrong = this.wrong(name, value);
     if (wrong) return wrong;

@@ -55,7 +55,7 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
 def live_scenario(table: Table) -> Scenario | None:
     """Return the first run of a study as a scenario of the page that runs the models; None if such a page cannot.
 
-    It cannot where FMUs, faults that are drawn by lot, steps or the controller's model are the study's.
+    It cannot where FMUs, random faults, steps or the controller's model are the study's.
     """
     scenario = chunk_scenario(table.job, table.chunk(0), 0)
     if page_names(table.job) is None or scenario.system is not None or scenario.faults:

@@ -80,7 +80,7 @@ def success_mask(table: Table) -> NDArray[np.bool_]:
 
 
 class OutcomeCount(NamedTuple):
-    """How many runs of a table ended in one way."""
+    """How many runs of a table ended alike."""
 
     outcome: str
     reason: str

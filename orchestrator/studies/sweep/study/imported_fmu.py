@@ -1,4 +1,4 @@
-"""FMUs of somebody else's in a study: what of them can be varied and kept, and which they are."""
+"""Third-party FMUs in a study: what of them can be varied and kept, and which they are."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ from orchestrator.simulation.system.assemble import elaborate
 
 
 def files_of(scenario: Scenario) -> Files:
-    """Return instance -> FMU of somebody else's in the system of ``scenario``. Raises ``BadInput``."""
+    """Return instance -> third-party FMU in the system of ``scenario``. Raises ``BadInput``."""
     return ImportedFmus().with_system(scenario.system).files
 
 

@@ -143,7 +143,7 @@ def _fields(key: str, scenario: Scenario) -> list[Field]:
 
 
 def _parameters_of_key(key: str) -> list[str]:
-    """Return what a key stands for: a parameter of the car is told both models."""
+    """Return what a key stands for: a parameter of the car belongs to both models."""
     return [f"{owner}.{key}" for owner in MODELS] if key.startswith("car.") else [key]
 
 

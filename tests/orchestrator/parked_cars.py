@@ -4,8 +4,6 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from controller_fmu.interface import Reason
 from modelkit.car import Car, car_length
 from modelkit.variables import with_values
@@ -13,6 +11,7 @@ from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.slot_sizes import ParkingType, shortest_slot
 from orchestrator.session.session import run_scenario
 from orchestrator.studies.parking.cases import ISO
 
@@ -71,7 +70,10 @@ def lacking(scenario: Scenario) -> str:
     length = car_length(car)
     along, across = scenario.slot.length, scenario.slot.width
     if abs(math.sin(scenario.slot.heading)) > 0.5:
-        asked = ((across, shortest_slot(Kind.PERPENDICULAR, car, ISO), "wide"), (along, length, "deep"))
+        asked = ((across, shortest_slot(ParkingType.PERPENDICULAR, car, ISO), "wide"), (along, length, "deep"))
     else:
-        asked = ((along, shortest_slot(Kind.PARALLEL, car, ISO), "long"), (across, car.width + ISO.deeper, "deep"))
+        asked = (
+            (along, shortest_slot(ParkingType.PARALLEL, car, ISO), "long"),
+            (across, car.width + ISO.deeper, "deep"),
+        )
     return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m required" for has, needs, what in asked if has < needs - 1e-9)

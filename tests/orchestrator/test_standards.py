@@ -3,14 +3,12 @@
 import pytest
 
 from controller_fmu import MODEL
-from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from modelkit.car import Car
 from modelkit.variables import Variable, variables, with_values
 from orchestrator.inputs.scenario.files import library_names
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.requirements import library_requirements
-from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.slot_sizes import ParkingType, library_slot_sizes, shortest_slot
 
 LIMITS = {item.id: item.limit for item in library_requirements("gbt41630")}
 OF_STANDARD = [item for item in variables(MODEL.params) if item.signal.source == "GB/T 41630"]
@@ -37,10 +35,6 @@ def test_nobody_can_have_a_car_stand_out_further_than_the_standard_allows() -> N
     assert ends == {"apa.plan.stand_out": abs(limit), "apa.end.out": abs(limit)}
 
 
-def test_the_assist_knows_the_shortest_slots_as_they_are_told() -> None:
-    assert ISO_16787._asdict() == library_slot_sizes("iso16787")
-
-
 @pytest.mark.parametrize(("name", "kind"), [("apa-parallel-tight", 1), ("apa-perpendicular-tight", 2)])
 def test_the_tight_slots_are_the_shortest_but_for_centimetres(name: str, kind: int) -> None:
     scenario = load_scenario(name)
@@ -48,8 +42,8 @@ def test_the_tight_slots_are_the_shortest_but_for_centimetres(name: str, kind: i
     car = with_values(Car, own)
     assert scenario.slot is not None
     along, across = scenario.slot.length, scenario.slot.width
-    shortest = shortest_slot(kind, car, ISO_16787)
-    assert 0.0 <= (along if kind == Kind.PARALLEL else across) - shortest < 0.05
+    shortest = shortest_slot(kind, car, library_slot_sizes("iso16787"))
+    assert 0.0 <= (along if kind == ParkingType.PARALLEL else across) - shortest < 0.05
 
 
 def test_a_limit_of_a_standard_is_the_same_in_every_set_that_has_it() -> None:

@@ -64,10 +64,7 @@ def test_every_run_ends_parked_or_failed_with_its_reason(results: list[GridRun])
 
 @needs_compiler
 def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
-    inside = [item for item in results if item.inside]
-    assert len(inside) > 30
-    for group in (results, inside):
-        assert sum(item.is_gbt for item in group) >= 0.99 * len(group)
+    assert sum(item.is_gbt for item in results) >= 0.99 * len(results)
 
 
 @needs_compiler
@@ -114,7 +111,7 @@ def test_the_command_prints_the_tables_and_rows_come_back(tmp_path: Path, capsys
     assert main(asked) == 0
     printed = capsys.readouterr().out
     assert "touched something" in printed
-    assert "from inside the start range" in printed
+    assert "slot found" in printed
     assert main(["replay", str(tmp_path / "apa-grid.parquet"), "--row", "1", "--no-page"]) == 0
     assert "same bits as in the table" in capsys.readouterr().out
 

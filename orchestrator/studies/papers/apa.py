@@ -14,7 +14,6 @@ from controller_fmu.apa.slot import Kind, Margins, Site, Slot, shortest_for_one_
 from controller_fmu.apa.ways.exit import exit_of
 from controller_fmu.apa.ways.fit import least_moves
 from controller_fmu.apa.ways.move import is_move_free, length_of, point_at
-from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.apa.ways.turns import reverse_s, turn_of
 from controller_fmu.common.curve import advance
@@ -23,7 +22,7 @@ from modelkit.car import Car
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes, shortest_slot
 from orchestrator.studies.papers.apa_figure import draw_apa
 from orchestrator.studies.papers.result import (
     CONCLUSION,
@@ -111,7 +110,7 @@ def _length_rows(name: str) -> list[Row]:
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
     by_search = shortest_by_search(car, width)
-    sizes = SlotSizes(**library_slot_sizes("iso16787"))
+    sizes = library_slot_sizes("iso16787")
     iso = shortest_slot(Kind.PARALLEL, Car(wheelbase=car.front, front_overhang=0.0, rear_overhang=car.rear), sizes)
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [

@@ -9,15 +9,13 @@ import random
 from functools import cache
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
 from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
-from orchestrator.inputs.scenario.slot_sizes import library_slot_sizes
+from orchestrator.inputs.scenario.slot_sizes import ParkingType, library_slot_sizes, shortest_slot
 
-ISO = SlotSizes(**library_slot_sizes("iso16787"))
+ISO = library_slot_sizes("iso16787")
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
 STEERING_RATIO = 19.0
@@ -38,7 +36,10 @@ CARS = {
 """Cars of the studies: the small one has the outline and the turning circle of the car of Guo 2015, the large one the
 outline of that of Zhang 2022 with a wider circle, the middle one is of no paper. Whoever asks for a car of a file has
 ``cars/``."""
-EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
+EXTRA: dict[int, tuple[float, ...]] = {
+    ParkingType.PARALLEL: (0.0, 0.4, 0.8, 1.6),
+    ParkingType.PERPENDICULAR: (0.0, 0.3, 0.8),
+}
 """Length (width) over the shortest of ISO 16787 [m]."""
 BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
@@ -49,7 +50,7 @@ WALL_DISTANCE = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
 PERPENDICULAR_DEPTH = 4.6
 """Of the neighbours of a perpendicular slot [m]."""
-KINDS: dict[int, str] = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
+KINDS: dict[int, str] = {ParkingType.PARALLEL: "parallel", ParkingType.PERPENDICULAR: "perpendicular"}
 SIDES = {1: "right", -1: "left"}
 
 
@@ -108,9 +109,9 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
     """Return two neighbours, behind a parallel slot a wall, and the start."""
-    along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
+    along, deep = (4.4, 1.8) if case.kind == ParkingType.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
     things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
-    if case.kind == Kind.PARALLEL:
+    if case.kind == ParkingType.PARALLEL:
         things.append((-12.0, case.length + 12.0, -width - WALL_DISTANCE - 1.0, -width - WALL_DISTANCE))
     scene: dict[str, Any] = {}
     for number, (x0, x1, y0, y1) in enumerate(things, start=1):
@@ -130,7 +131,7 @@ def standing_of(case: GridCase) -> tuple[Target, Slot]:
     car = CARS[case.car]
     wheelbase, front, rear, width = car.wheelbase, car.front_overhang, car.rear_overhang, car.width
     middle, turn = 0.5 * case.length, 0.5 * math.pi * case.side
-    if case.kind == Kind.PARALLEL:
+    if case.kind == ParkingType.PARALLEL:
         depth = width + WALL_DISTANCE
         target = Target(x=middle - 0.5 * (wheelbase + front - rear), y=-0.5 * case.side * width)
         return target, Slot(x=middle, y=-0.5 * case.side * depth, length=case.length, width=depth)

@@ -6,15 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.frame import in_frame
 from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.inputs.scenario.slot_sizes import ParkingType
 from orchestrator.simulation.cosim.fmu_instance import Array
-from orchestrator.studies.parking.cases import CARS, WALL_DISTANCE, GridCase, cases, parameters
-from orchestrator.studies.parking.start_range import is_inside
+from orchestrator.studies.parking.cases import GridCase, cases
 from orchestrator.studies.parking.studied_systems import SYSTEMS, display_measures
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
@@ -38,7 +37,10 @@ def measures_of(system: int) -> dict[str, Measure]:
     return took | display_measures(POSES, system)
 
 
-GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR: "GB/T 41630, perpendicular"}
+GBT: dict[int, str] = {
+    ParkingType.PARALLEL: "GB/T 41630, parallel",
+    ParkingType.PERPENDICULAR: "GB/T 41630, perpendicular",
+}
 PROJECT_LIMITS, PROJECT_LIMITS_BUT_MANOEUVRES = "project", "project, but for the manoeuvres"
 
 
@@ -63,8 +65,6 @@ class GridRun(NamedTuple):
     """x of the rear axle beyond corner B when the car stood to plan [m]; NaN if it did not."""
     kind: int
     """The slot found: as what, 0 none."""
-    inside: bool
-    """It stood inside the start range, see :mod:`orchestrator.studies.parking.start_range`."""
     is_gbt: bool
     """Parked within GB/T 41630: heading, lateral position, manoeuvres, no contact."""
     is_within_limits: bool
@@ -111,7 +111,6 @@ def _parking(row: Mapping[str, Any]) -> GridRun:
         row["corner_b"],
         row["along"],
         0 if math.isnan(row["shown.kind"]) else int(row["shown.kind"]),
-        bool(row["inside"]),
         bool(gbt),
         bool(gbt and row[WITHIN.format(PROJECT_LIMITS)]),
         bool(gbt and row[WITHIN.format(PROJECT_LIMITS_BUT_MANOEUVRES)]),
@@ -126,20 +125,12 @@ def _detection_columns(columns: Columns) -> Mapping[str, Array]:
     return dict(zip(FOUND.columns, np.array(found).T, strict=True))
 
 
-def _how_found(row: Mapping[str, float]) -> tuple[float, float, float, float]:
+def _how_found(row: Mapping[str, float]) -> tuple[float, float, float]:
     case = cases(int(row["lot"]))[int(row["number"])]
     if math.isnan(row["shown.kind"]):
-        return math.nan, math.nan, math.nan, 0.0
+        return math.nan, math.nan, math.nan
     pose = pose_of(row, POSE)
-    inside = is_inside(pose, true_slot(case), parameters(case)[1])
-    return *corner_errors(case, row), pose.x - case.length, float(inside)
-
-
-def true_slot(case: GridCase) -> Slot:
-    """Return the slot of a case as it is, its corner A at the world's origin."""
-    side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
-    slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
-    return slot._replace(depth=CARS[case.car].width + WALL_DISTANCE) if case.kind == Kind.PARALLEL else slot
+    return *corner_errors(case, row), pose.x - case.length
 
 
 def corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:
@@ -170,7 +161,6 @@ FOUND = DerivedParameter(
         ),
         "corner_b": Metric("m", "the same of corner B"),
         "along": Metric("m", "x of the rear axle beyond corner B when the car stood to plan"),
-        "inside": Metric("1", "1: it stood inside the start range then"),
     },
     _detection_columns,
 )

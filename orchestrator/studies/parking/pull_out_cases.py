@@ -9,17 +9,17 @@ import math
 import random
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.slot import Kind
 from controller_fmu.common.driver_selection import ChosenSide
 from modelkit.car import car_length
 from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.slot_sizes import ParkingType
 from orchestrator.studies.parking.cases import BODY, CARS, KINDS
 from orchestrator.studies.parking.imperfect import imperfect
 
 SEED_STRIDE = 100_000
 LENGTH, WIDTH = 4.4, 1.8
 """Of the neighbours [m]."""
-ROOM: dict[int, tuple[float, float]] = {Kind.PARALLEL: (0.5, 2.0), Kind.PERPENDICULAR: (0.6, 1.6)}
+ROOM: dict[int, tuple[float, float]] = {ParkingType.PARALLEL: (0.5, 2.0), ParkingType.PERPENDICULAR: (0.6, 1.6)}
 """By how much the slot is longer, or wider, than the car [m]."""
 MIN_NEIGHBOUR_GAP = 0.2
 """The car stands no nearer to a neighbour [m]."""
@@ -76,7 +76,7 @@ def case_of(number: int, lot: int, people: bool) -> PullOutCase:
     extra = draw.uniform(*ROOM[kind])
     least = MIN_NEIGHBOUR_GAP / extra
     behind = draw.choice(BEHIND)
-    beside = draw.uniform(*BESIDE.get(behind, (0.0, 0.0))) if kind == Kind.PARALLEL else draw.uniform(*AT_TAIL)
+    beside = draw.uniform(*BESIDE.get(behind, (0.0, 0.0))) if kind == ParkingType.PARALLEL else draw.uniform(*AT_TAIL)
     return PullOutCase(
         number=number,
         lot=lot,
@@ -87,7 +87,7 @@ def case_of(number: int, lot: int, people: bool) -> PullOutCase:
         extra=extra,
         share=draw.uniform(least, 1.0 - least),
         askew=draw.uniform(-ASKEW, ASKEW),
-        behind=behind if kind == Kind.PARALLEL or behind == "wall" else "nothing",
+        behind=behind if kind == ParkingType.PARALLEL or behind == "wall" else "nothing",
         beside=beside,
         street=draw.choice(STREETS),
         out_a=draw.uniform(*STAGGER),
@@ -108,7 +108,7 @@ class Footprint(NamedTuple):
 def start_of(case: PullOutCase) -> tuple[float, float, float]:
     """Return where the rear axle of a car stands that comes out to the left: x, y, heading; its outer end at y = 0."""
     car = CARS[case.car]
-    if case.kind == Kind.PARALLEL:
+    if case.kind == ParkingType.PARALLEL:
         return case.share * case.extra + car.rear_overhang, -0.5 * car.width, case.askew
     x = case.share * case.extra + 0.5 * car.width
     return x, -car.wheelbase - car.front_overhang, 0.5 * math.pi + case.askew
@@ -117,7 +117,7 @@ def start_of(case: PullOutCase) -> tuple[float, float, float]:
 def things_of(case: PullOutCase) -> dict[str, Footprint]:
     """Return what stands there on the left: neighbours, what the slot ends at, the other side of the street."""
     car = CARS[case.car]
-    across = case.kind == Kind.PERPENDICULAR
+    across = case.kind == ParkingType.PERPENDICULAR
     along, deep = (WIDTH, LENGTH) if across else (LENGTH, WIDTH)
     size, depth = (car.width, car_length(car)) if across else (car_length(car), car.width)
     end = -depth - case.beside
@@ -160,7 +160,7 @@ def _passer(case: PullOutCase) -> dict[str, float]:
     draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
     if case.passes == PASSES[0]:
         return {"length": 0.0}
-    far = case.extra + (car_length(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
+    far = case.extra + (car_length(CARS[case.car]) if case.kind == ParkingType.PARALLEL else CARS[case.car].width)
     place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
     person, leaves = {**place, "length": PERSON_WIDTH, "width": PERSON_WIDTH}, draw.uniform(3.0, 20.0)
     if case.passes == PASSES[1]:

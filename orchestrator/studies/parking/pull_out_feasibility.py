@@ -2,57 +2,74 @@
 
 import math
 
-from controller_fmu.apa.out.limits import MOVES
-from controller_fmu.apa.out.pull_out import OutSearch, plan_out
-from controller_fmu.apa.outline import Box, Obstacles, Shape, clearance, grown
-from controller_fmu.apa.slot import Kind, Site
-from controller_fmu.apa.ways.planner import FOUND, SEARCHING, PlanSearch
-from controller_fmu.common.slot_frame import SlotFrame, to_slot
-from modelkit.car import largest_curvature
+from modelkit.geometry import Box, boxes_gap, outline
 from modelkit.vocabulary import Pose
+from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.obstacle_map import map_of
+from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.scenario.slot_sizes import ParkingType
+from orchestrator.inputs.text.console import say
+from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.parking.cases import CARS
-from orchestrator.studies.parking.pull_out_cases import PullOutCase, start_of, things_of
+from orchestrator.studies.parking.pull_out_cases import PullOutCase, start_of, things_of, vehicle_of
+from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
 
 MIN_CLEARANCE = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""
+PLANNING_TIME = 5.0
+STEPS_PER_SAMPLE = 100
+"""The planner has so much time [s], and so many steps of its search in each sample."""
+GOALS_ALONG = (5.0, 8.0)
+GOALS_OUT = (1.5, 2.3, 3.1)
+"""A car is out at one of these poses along the road: so far [m] beyond where it stood, and out of the row."""
 
 
-def moves_out(case: PullOutCase) -> int:
-    """Return how many moves the planner needs that knows what stands there, with the whole lock; 0: it finds no way."""
-    site, car = site_known(case, MIN_CLEARANCE), shape_known(case)
-    start = to_slot(Pose(*start_of(case)), site.frame)
-    search, plan = OutSearch(), PlanSearch(SEARCHING)
-    while plan.status == SEARCHING:
-        search, plan = plan_out(search, start, site, car, MOVES[-1])
-    return plan.moves if plan.status == FOUND else 0
+def is_way_out(case: PullOutCase) -> bool:
+    """Return whether a planner that knows what stands there finds a path to one of several poses on the road."""
+    goals = (goal_of(case, along, out) for along in GOALS_ALONG for out in GOALS_OUT)
+    return any(is_path(case, goal) for goal in goals)
 
 
-def shape_known(case: PullOutCase) -> Shape:
-    """Return the outline of the car of a case, with its whole lock."""
-    car = CARS[case.car]
-    return Shape(car.wheelbase + car.front_overhang, car.rear_overhang, 0.5 * car.width, largest_curvature(car), 0.8)
+def goal_of(case: PullOutCase, along: float, out: float) -> Pose:
+    """Return a pose on the road, of a car that has turned to the left if it stood across the road."""
+    x, _, _ = start_of(case)
+    return Pose(x + along, out, 0.0) if case.kind == ParkingType.PARALLEL else Pose(x - along, out, math.pi)
 
 
-def site_known(case: PullOutCase, margin: float) -> Site:
-    """Return what stands there, grown by a margin [m], in the frame that the planner has for such a slot."""
-    things = things_of(case)
-    across = case.kind == Kind.PERPENDICULAR
-    boxes = {}
-    for name, item in things.items():
-        box = Box(item.y0, item.y1, -item.x1, -item.x0) if across else Box(item.x0, item.x1, item.y0, item.y1)
-        boxes[name] = grown(box, margin)
-    beside = boxes.get("wall", boxes.get("kerb", Box()))
-    obstacles = Obstacles(boxes["first"], boxes["second"], beside, boxes.get("across", Box()))
-    frame = SlotFrame(Pose(0.0, 0.0, 0.5 * math.pi if across else 0.0), 1.0)
-    return Site(case.kind, frame, obstacles)
+def is_path(case: PullOutCase, goal: Pose) -> bool:
+    """Return whether the planner, told the scene as its map, finds a path from where the car stands to ``goal``."""
+    car = car_parameters(CARS[case.car])
+    scenario = Scenario(
+        name="apa-out-path",
+        stop_time=PLANNING_TIME,
+        vehicle=vehicle_of(case._replace(side=1)) | {"odometry.ideal": True},
+        controller={
+            **car,
+            "system": PARKING_SYSTEM,
+            "search.active": False,
+            "plan.min_margin": MIN_CLEARANCE,
+            "plan.steps_per_sample": STEPS_PER_SAMPLE,
+            **{f"target.{axis}": value for axis, value in goal._asdict().items()},
+        },
+    )
+    known = scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
+    recording = run_scenario(known, fmu_files("native", say), kind="native").recording
+    return bool((recording.signals["controller.parking.segments"] > 0.0).any())
 
 
 def free_ahead(case: PullOutCase, end: Pose, most: float = 5.0) -> float:
     """Return how far [m] a car that ended at ``end`` (scene) could drive straight on past its neighbours, ``most``."""
-    site, car = site_known(case, 0.0), shape_known(case)
-    at = to_slot(Pose(end.x, case.side * end.y, case.side * end.heading), site.frame)
-    row = Obstacles(site.obstacles.behind, site.obstacles.ahead)
+    car, at = CARS[case.car], Pose(end.x, case.side * end.y, case.side * end.heading)
+    things = things_of(case)
+    row = [
+        Box(0.5 * (item.x0 + item.x1), 0.5 * (item.y0 + item.y1), 0.0, item.x1 - item.x0, item.y1 - item.y0)
+        for item in (things["first"], things["second"])
+    ]
     way = 0.0
-    while way < most and clearance(at, car._replace(front=car.front + way), row, 0.0) > 0.0:
+    while way < most and all(
+        boxes_gap(outline(at, car.wheelbase, car.front_overhang + way, car.rear_overhang, car.width), item) > 0.0
+        for item in row
+    ):
         way += 0.1
     return way

@@ -24,7 +24,7 @@ from orchestrator.studies.parking.pull_out_cases import (
     side_of,
     vehicle_of,
 )
-from orchestrator.studies.parking.pull_out_feasibility import free_ahead, moves_out
+from orchestrator.studies.parking.pull_out_feasibility import free_ahead, is_way_out
 from orchestrator.studies.parking.studied_systems import (
     APA_SYSTEM,
     PARKING_SYSTEM,
@@ -60,8 +60,8 @@ class OutRun(NamedTuple):
     seconds: float
     ahead: float
     """Free ahead of the car where it ended [m]."""
-    way: int
-    """Moves of the way out that there is, 0: none; not looked for (1) if the car came out."""
+    way: bool
+    """Whether there is a way out; not looked for if the car came out."""
 
 
 def scenario_of(case: PullOutCase) -> Scenario:
@@ -120,7 +120,7 @@ def outs(table: Table) -> list[OutRun]:
             abs(float(columns["touched.speed"][row])) > STANDSTILL_SPEED,
         )
         numbers = (nearest, driven, int(columns["manoeuvres"][row]), float(columns["duration"][row]))
-        reason, way = str(columns["reason"][row]), 1 if out else moves_out(case)
+        reason, way = str(columns["reason"][row]), out or is_way_out(case)
         found.append(OutRun(case, out, reason, *numbers, free_ahead(case, end), way))
     return found
 
@@ -135,13 +135,13 @@ def report(table: Table, folder: Path) -> int:
     for run in found:
         if not run.is_out and run.way:
             where = f"{KINDS[run.case.kind]} +{run.case.extra:.2f} m, {run.case.behind} {run.case.beside:.2f} m"
-            text = f"run {run.case.number}: {where}, {run.case.car}: {run.reason}; there is a way of {run.way} moves"
+            text = f"run {run.case.number}: {where}, {run.case.car}: {run.reason}; there is a way"
             to.print(text, highlight=False, soft_wrap=True)
     for reason, count in Counter(run.reason for run in found if not run.is_out).most_common():
         to.print(f"{count} not out: {reason}", highlight=False)
     touched, driven = sum(run.nearest <= 0.0 for run in found), sum(run.driven for run in found)
     early = sum(run.is_out and run.ahead < FREE_AHEAD for run in found)
-    out, ways = sum(run.is_out for run in found), sum(run.way > 0 for run in found)
+    out, ways = sum(run.is_out for run in found), sum(run.way for run in found)
     text = f"{len(found)} runs, a way out of {ways}, {out} out ({100.0 * out / max(ways, 1):.1f} %), {touched} touched"
     text += f" ({driven} while they drove)" if touched else ""
     to.print(f"{text}, {early} handed over too early", highlight=False)
@@ -159,7 +159,7 @@ def _by_room(found: list[OutRun]) -> Printed:
         ends = (f"{out[len(out) // 2].manoeuvres} (most {out[-1].manoeuvres})",) if out else ("",)
         table.add_row(
             f"{KINDS[kind]}, {low:.1f} to {low + 0.5:.1f} m",
-            *map(str, (len(own), sum(run.way > 0 for run in own), len(out))),
+            *map(str, (len(own), sum(run.way for run in own), len(out))),
             *ends,
             f"{100.0 * min(run.nearest for run in own):.0f} cm",
             f"{max(run.seconds for run in own):.0f} s",

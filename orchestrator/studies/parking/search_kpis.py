@@ -15,10 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from rich.table import Table as Printed
 
-from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import car_length
 from orchestrator.evaluation.verdict.numbers import Metric
+from orchestrator.inputs.scenario.slot_sizes import ParkingType, shortest_slot
 from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
@@ -42,9 +41,9 @@ from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
 from orchestrator.studies.sweep.table import Table
 
-WIDER: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.8), Kind.PERPENDICULAR: (0.0, 0.5)}
+WIDER: dict[int, tuple[float, ...]] = {ParkingType.PARALLEL: (0.0, 0.8), ParkingType.PERPENDICULAR: (0.0, 0.5)}
 """Gaps that fit, over ISO 16787's shortest [m]."""
-TOO_SMALL: dict[int, float] = {Kind.PARALLEL: 0.25, Kind.PERPENDICULAR: 0.5}
+TOO_SMALL: dict[int, float] = {ParkingType.PARALLEL: 0.25, ParkingType.PERPENDICULAR: 0.5}
 """A gap that does not fit is so much [m] longer (wider) than the car."""
 SPEEDS = (5.0, 10.0, 15.0, 20.0)
 """Of the search [km/h]."""
@@ -75,7 +74,7 @@ def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: flo
     name = lottery.choice(list(CARS))
     car, shortest = CARS[name], shortest_slot(kind, CARS[name], ISO)
     length = car_length(car)
-    small = (length if kind == Kind.PARALLEL else car.width) + TOO_SMALL[kind]
+    small = (length if kind == ParkingType.PARALLEL else car.width) + TOO_SMALL[kind]
     extra = (*WIDER[kind], small - shortest)[size]
     side, heading = 1 - 2 * (draw % 2), math.radians(lottery.uniform(-MAX_START_HEADING, MAX_START_HEADING))
     body = BODIES[draw // 2]

@@ -94,7 +94,7 @@ def line(item: GridRun) -> str:
     return (
         f"{case.number:4d} {case.car} {KINDS[case.kind]} {SIDES[case.side]} +{case.extra:.1f} m, "
         f"{case.beside:.1f} m beside, {math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
-        f"{'inside' if item.inside else 'outside'}: {item.outcome} ({item.reason}), "
+        f"{item.outcome} ({item.reason}), "
         f"{100.0 * item.lateral:+.1f} cm {math.degrees(item.heading):+.2f} deg, {item.manoeuvres} manoeuvres, "
         f"{item.parking_time:.0f} s, {100.0 * item.nearest:.0f} cm clear, "
         f"corners {100.0 * item.corner_a:.0f} and {100.0 * item.corner_b:.0f} cm: {verdict}"
@@ -110,11 +110,10 @@ def _labels(case: GridCase) -> dict[str, str | float]:
 
 
 def _totals(found: list[GridRun]) -> Printed:
-    """Return the totals: of all runs, of those from inside the start range, of the rest, of those without a slot."""
+    """Return the totals: of all runs, of those that a slot was shown to, of the rest."""
     groups = {
         "all": found,
-        "from inside the start range": [item for item in found if item.inside],
-        "from outside": [item for item in found if item.kind != 0 and not item.inside],
+        "slot found": [item for item in found if item.kind != 0],
         "no slot found": [item for item in found if item.kind == 0],
     }
     table = Printed(box=None, pad_edge=False)

@@ -10,11 +10,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from orchestrator.evaluation.verdict.standing import in_frames, outline_margin
 from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.inputs.scenario.requirements import library_requirements
+from orchestrator.inputs.scenario.slot_sizes import ParkingType, shortest_slot
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, ISO
 from orchestrator.studies.parking.parking_world.factors import NO_BAYS
@@ -45,7 +44,7 @@ def with_bays(f: F) -> dict[str, Array]:
     """Return the factors with slot and gaps as bays make them; without a pillar, and a bin only in a single bay."""
     bays, count = in_bays(f), bay_count(f)
     length = count * f["bay"] + side_room(f, "a") + side_room(f, "b")
-    shortest = np.array([shortest_slot(Kind.PERPENDICULAR, car, ISO) for car in CARS.values()])
+    shortest = np.array([shortest_slot(ParkingType.PERPENDICULAR, car, ISO) for car in CARS.values()])
     changed = {"extra": length - shortest[np.asarray(f["car"]).astype(int)], "pillar": 0.0 * length}
     changed |= {f"gap_{which}": 2.0 * side_room(f, which) for which in "ab"}
     changed["bin"] = np.where(count > 1.0, 0.0, f["bin"])
@@ -84,5 +83,5 @@ def stands_in_a_bay(columns: Mapping[str, Array]) -> NDArray[np.bool_]:
 @cache
 def _limits() -> tuple[float, ...]:
     """Return how far GB/T 41630 lets a vehicle be turned, aside and out of a perpendicular slot, and its manoeuvres."""
-    required = library_requirements(GBT_SETS[Kind.PERPENDICULAR], *CLAIMED)
+    required = library_requirements(GBT_SETS[ParkingType.PERPENDICULAR], *CLAIMED)
     return tuple(abs(float(item.limit)) for item in required)

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from controller_fmu.apa.params import SearchParams
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
@@ -23,8 +22,8 @@ COLUMNS = {
 }
 HEARD = UltrasonicParams().kerb_height
 """Kerbs lower than this [m] are not heard."""
-MAX_SEARCH_SPEED = 3.6 * SearchParams().speed
-"""The assist is asked for up to this speed [km/h]."""
+MAX_SEARCH_SPEED = 20.0
+"""A system has to detect slots up to this speed of the driver [km/h]: the fastest driver of the grid."""
 
 
 def feasibility_columns(columns: Columns) -> Mapping[str, Array]:

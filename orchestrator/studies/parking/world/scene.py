@@ -11,9 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import Car, car_length
 from orchestrator.inputs.scenario.car import car_parameters
+from orchestrator.inputs.scenario.slot_sizes import shortest_slot
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODY, CARS, ISO
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY, STEPS

@@ -12,12 +12,16 @@ from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 
+from modelkit.signal import Signal
+from modelkit.variables import Variable
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, McapFile
 from orchestrator.presentation.log.mcap_log import McapLog
+from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.log.signal_channels import add_channel
 from orchestrator.session.session import Messages, run_instances, run_scenario
 from orchestrator.simulation.cosim.algorithm import Termination
 from orchestrator.simulation.cosim.model_instance import ModelInstance
@@ -77,6 +81,55 @@ def test_read_log_gives_the_recording_bit_for_bit(toy_run: tuple[Path, Recording
     assert read.info["end"] == found.info["end"]
     assert read.info["seed"] == found.info["seed"]
     assert read.info["fmus"] == found.info["fmus"]
+
+
+def test_large_structures_are_written_on_change_and_read_at_each_exchange(demo_run: tuple[Path, Recording]) -> None:
+    path, found = demo_run
+    read = read_log(path)
+    assert read.signals.keys() == found.signals.keys()
+    for name, values in found.signals.items():
+        assert read.signals[name].tobytes() == np.ascontiguousarray(values).tobytes(), name
+    points = decoded(path, "/controller/guo2015")
+    assert len(points) < found.count / 20
+    assert {t_ns: message.q1.x for t_ns, message in points}.items() <= dict(
+        zip(found.t_ns.tolist(), found.signals["controller.guo2015.q1.x"].tolist(), strict=True)
+    ).items()
+    with path.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    begins = [index.message_start_time for index in summary.chunk_indexes if index.message_end_time]
+    assert set(begins[1:-1]) <= {t_ns for t_ns, _ in points}
+
+
+def variables_of(*names: str) -> list[Variable]:
+    return [Variable(name, float, Signal("1", "a signal"), 0.0) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("order", "expected"),
+    [
+        ([("state", 0), ("", 0), ("", 1), ("state", 2), ("", 2)], [5.0, 5.0, 7.0]),
+        ([("", 0), ("", 1), ("state", 1)], r"lacks values of plant\.state\.a"),
+        ([("state", 1), ("", 0), ("", 1)], r"lacks values of plant\.state\.a"),
+        ([("state", 0), ("", 0), ("", 1), ("state", 1)], "its times do not rise"),
+        ([("state", 0), ("", 0), ("other", 0), ("", 1)], r"has two channels /plant"),
+    ],
+)
+def test_messages_on_change_hold_until_the_next(tmp_path: Path, order: Any, expected: Any) -> None:
+    path = tmp_path / "run.mcap"
+    file = McapFile(path)
+    channels = {"state": add_channel(file, "/plant/state", "PlantState", variables_of("a"), ["local"])}
+    channels[""] = add_channel(file, "/plant", "Plant", variables_of("x"), ["output"])
+    if "other" in dict(order):
+        channels["other"] = add_channel(file, "/plant", "Plant", variables_of("x"), ["output"])
+    for place, t_ns in order:
+        file.write(channels[place], t_ns, Encoder(variables_of("x")).encode(np.array([5.0 + t_ns])))
+    file.close()
+    if isinstance(expected, str):
+        with pytest.raises(BadInput, match=expected):
+            read_log(path)
+    else:
+        assert read_log(path).signals["plant.state.a"].tolist() == expected
 
 
 def test_units_and_states_stand_in_the_schema(toy_run: tuple[Path, Recording]) -> None:

@@ -21,9 +21,9 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.drawing.decimation import decimate, deviation
 from orchestrator.presentation.log import mcap_log
 from orchestrator.presentation.log.mcap_file import HEADER_SIZE, McapFile
-from orchestrator.presentation.log.mcap_log import add_channel
 from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import read_log
+from orchestrator.presentation.log.signal_channels import add_channel
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim import signal_blocks
 from orchestrator.simulation.cosim.recording import Recording, StoredRecording, recording_of

@@ -1,6 +1,6 @@
 """Writes an MCAP file whose rows of equal layout cost next to nothing, and that survives a kill.
 
-Chunks of up to 1 MiB are handed to the operating system at once, into ``path``.part, which gets its name when
+Chunks of at most a few MiB are handed to the operating system at once, into ``path``.part, which gets its name when
 complete. A block of messages of one channel and of one size is one array, message headers included;
 what is written once goes through the records of the ``mcap`` package. Format: mcap.dev/spec.
 """
@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import zstandard
 from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
 from mcap.records import (
     Channel,
-    Chunk,
     ChunkIndex,
     DataEnd,
     Footer,
@@ -31,6 +31,7 @@ from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
 from orchestrator.presentation.log.derived_files import clear
+from orchestrator.presentation.log.records import CHUNK, HEAD
 
 CHUNK_SIZE = 1024 * 1024
 LIBRARY = "apa-cosim"
@@ -39,10 +40,9 @@ MESSAGE_HEADER = np.dtype(
 )
 HEADER_SIZE = MESSAGE_HEADER.itemsize
 MESSAGE = struct.Struct("<BQHIQQ")
-MESSAGE_OPCODE = 5
 INDEX_HEADER = struct.Struct("<BQHI")
 INDEX_ENTRY = struct.Struct("<QQ")
-INDEX_OPCODE = 7
+COMPRESSION = b"zstd"
 FOOTER_SIZE = 9 + 8 + 8 + 4
 
 
@@ -58,6 +58,8 @@ class McapFile:
         self._size = 0
         self._crc = 0
         self._schemas: list[Schema] = []
+        self._described = b""
+        """The records of schemas and channels."""
         self._channels: list[Channel] = []
         self._counts: dict[int, int] = {}
         self._first_ns, self._last_ns = 1 << 62, 0
@@ -79,13 +81,18 @@ class McapFile:
         if not same:
             same = [Schema(id=len(self._schemas) + 1, name=schema, encoding="protobuf", data=descriptors)]
             self._schemas += same
-            self._add(_bytes(same[0]))
+            self._describe(same[0])
         number = len(self._channels) + 1
         channel = Channel(id=number, topic=topic, message_encoding="protobuf", schema_id=same[0].id, metadata=metadata)
         self._channels.append(channel)
         self._counts[number] = 0
-        self._add(_bytes(channel))
+        self._describe(channel)
         return number
+
+    def _describe(self, record: Schema | Channel) -> None:
+        described = _bytes(record)
+        self._described += described
+        self._add(described)
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Write a metadata record, outside the chunks, at once."""
@@ -95,20 +102,22 @@ class McapFile:
 
     def write(self, channel: int, t_ns: int, data: bytes) -> None:
         """Append one message at ``t_ns`` of simulated time."""
-        head = MESSAGE.pack(MESSAGE_OPCODE, MESSAGE.size - 9 + len(data), channel, self._counts[channel], t_ns, t_ns)
+        head = MESSAGE.pack(Opcode.MESSAGE, MESSAGE.size - 9 + len(data), channel, self._counts[channel], t_ns, t_ns)
         self._note(channel, 1, INDEX_ENTRY.pack(t_ns, self._chunk_size), t_ns, t_ns)
         self._add(head + data)
+        if self._chunk_size >= CHUNK_SIZE:
+            self._write_chunk()
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
         """Append messages of equal size at the times ``t_ns``, one per row, behind ``HEADER_SIZE`` bytes for a header.
 
-        The rows may be written over after ``flush``.
+        They stay in one chunk until ``flush``; after it the rows may be written over.
         """
         count, size = rows.shape
         if not count:
             return
         header = rows[:, :HEADER_SIZE].view(MESSAGE_HEADER)[:, 0]
-        header["opcode"], header["length"], header["channel"] = MESSAGE_OPCODE, size - 9, channel
+        header["opcode"], header["length"], header["channel"] = Opcode.MESSAGE, size - 9, channel
         header["sequence"] = self._counts[channel] + np.arange(count)
         header["log"] = header["publish"] = t_ns
         entries = np.empty((count, 2), dtype="<u8")
@@ -154,8 +163,6 @@ class McapFile:
     def _add(self, record: bytes | memoryview) -> None:
         self._parts.append(record)
         self._chunk_size += len(record)
-        if self._chunk_size >= CHUNK_SIZE and self._entries:
-            self._write_chunk()
 
     def _note(self, channel: int, count: int, entries: bytes, first_ns: int, last_ns: int) -> None:
         self._entries.setdefault(channel, []).append(entries)
@@ -174,39 +181,32 @@ class McapFile:
         """Channel -> times and offsets in the chunk of its messages."""
 
     def _write_chunk(self) -> None:
-        first, last = self._chunk_first_ns, self._chunk_last_ns
-        compressor = self._compressor.compressobj(size=self._chunk_size)
-        packed = b"".join([*map(compressor.compress, self._parts), compressor.flush()])
-        chunk = _bytes(
-            Chunk(
-                compression="zstd",
-                data=packed,
-                message_start_time=first,
-                message_end_time=last,
-                uncompressed_crc=0,  # the frame has a checksum of its own, which takes a quarter of the time
-                uncompressed_size=self._chunk_size,
-            )
-        )
+        first, last, size = self._chunk_first_ns, self._chunk_last_ns, self._chunk_size
+        packed = self._compressor.compress(b"".join(self._parts))
+        body = CHUNK.pack(first, last, size, 0, len(COMPRESSION)) + COMPRESSION + len(packed).to_bytes(8, "little")
+        length = HEAD.size + len(body) + len(packed)
         index = ChunkIndex(
             chunk_start_offset=self._size,
-            chunk_length=len(chunk),
-            compression="zstd",
+            chunk_length=length,
+            compression=COMPRESSION.decode(),
             compressed_size=len(packed),
-            uncompressed_size=self._chunk_size,
+            uncompressed_size=size,
             message_start_time=first,
             message_end_time=last,
             message_index_length=0,
             message_index_offsets={},
         )
-        found = b""
-        for channel, parts in self._entries.items():
-            index.message_index_offsets[channel] = self._size + len(chunk) + len(found)
-            entries = b"".join(parts)
-            found += INDEX_HEADER.pack(INDEX_OPCODE, 6 + len(entries), channel, len(entries)) + entries
-        index.message_index_length = len(found)
+        parts = [HEAD.pack(Opcode.CHUNK, length - HEAD.size), body, packed]
+        at = self._size + length
+        for channel, items in self._entries.items():
+            index.message_index_offsets[channel] = at
+            entries = b"".join(items)
+            parts += [INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + len(entries), channel, len(entries)), entries]
+            at += INDEX_HEADER.size + len(entries)
+        index.message_index_length = at - self._size - length
         self._chunks.append(index)
         self._first_ns, self._last_ns = min(self._first_ns, first), max(self._last_ns, last)
-        self._write(chunk + found)
+        self._write(b"".join(parts))
         self._begin_chunk()
 
     def _write_summary(self) -> None:
@@ -222,8 +222,8 @@ class McapFile:
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
-        records = [*self._schemas, *self._channels, statistics, *self._chunks, *self._metadata]
-        summary = b"".join(_bytes(record) for record in records)
+        records = [statistics, *self._chunks, *self._metadata]
+        summary = self._described + b"".join(_bytes(record) for record in records)
         # The checksum covers the summary and the footer up to the checksum itself.
         bare = _bytes(Footer(summary_start=self._size, summary_offset_start=0, summary_crc=0))[: FOOTER_SIZE - 4]
         footer = Footer(summary_start=self._size, summary_offset_start=0, summary_crc=zlib.crc32(summary + bare))

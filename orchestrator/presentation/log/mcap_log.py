@@ -1,6 +1,7 @@
 """The log of a run: every exchange of every instance, parameters, pictures and messages, in one MCAP file.
 
-Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
+Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen, at each exchange); of their
+large structures ``/controller/guo2015`` and so on (on change, and at the first exchange of a chunk);
 ``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
 (Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
 the file depends on real time, so the same run gives the same bytes.
@@ -15,10 +16,7 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
-from numpy.typing import NDArray
 
-from modelkit.signal import Role
-from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.geometry import (
     ON_ROAD,
     PLANNED,
@@ -30,14 +28,20 @@ from orchestrator.evaluation.verdict.geometry import (
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.presentation.drawing import scene
 from orchestrator.presentation.log.line import MAX_LINES, Line, line_of
-from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, HEADER_SIZE, McapFile
+from orchestrator.presentation.log.mcap_file import HEADER_SIZE, McapFile
 from orchestrator.presentation.log.protobuf_rows import Encoder
-from orchestrator.presentation.log.read_log import VARIABLES, with_checksum
-from orchestrator.presentation.log.schema import PACKAGE, descriptor_set, file_descriptor
+from orchestrator.presentation.log.read_log import with_checksum
+from orchestrator.presentation.log.schema import PARAMETERS
+from orchestrator.presentation.log.signal_channels import (
+    RowChanges,
+    add_channel,
+    message_name,
+    rows_per_chunk,
+    signal_channels,
+)
 from orchestrator.presentation.log.sink import Sink
 from orchestrator.simulation.cosim.algorithm import Termination
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
-from orchestrator.simulation.cosim.recording import to_json
 from orchestrator.simulation.cosim.signal_blocks import Times
 
 SCENE_PERIOD_NS = 50_000_000
@@ -47,25 +51,6 @@ TRAIL_POSES = 100
 MAX_TRAIL_POSES = 20_000
 """Kept of a run of any length; the first hour has fewer."""
 AXES = ("x", "y", "heading")
-
-
-class _InstanceChannel:
-    """One channel for all inputs and outputs of an instance; ``columns``: its inputs, its outputs in a row of all."""
-
-    def __init__(self, file: Sink, instance: FmuInstance, columns: Sequence[slice]) -> None:
-        variables = [*instance.outputs.variables, *instance.inputs.variables]
-        notes = ["local" if Role.LOCAL in item.roles else "output" for item in instance.outputs.variables]
-        notes += ["input"] * len(instance.inputs.names)
-        inputs, outputs = columns
-        order = [*range(outputs.start, outputs.stop), *range(inputs.start, inputs.stop)]
-        self._channel = add_channel(file, f"/{instance.name}", instance.name.title().replace("_", ""), variables, notes)
-        self._encoder = Encoder(variables, order, HEADER_SIZE)
-        self._file = file
-        self.size = HEADER_SIZE + self._encoder.size
-
-    def write(self, times: NDArray[np.int64], rows: Array) -> None:
-        """Hand one message for each of ``times`` to the file."""
-        self._file.write_rows(self._channel, times, self._encoder.rows(rows))
 
 
 class McapLog:
@@ -80,7 +65,9 @@ class McapLog:
         """Of ``/log``."""
         places = places_of(instances)
         self._channels = [
-            _InstanceChannel(self._file, instance, places[2 * k : 2 * k + 2]) for k, instance in enumerate(instances)
+            channel
+            for number, instance in enumerate(instances)
+            for channel in signal_channels(self._file, instance, places[2 * number : 2 * number + 2])
         ]
         self._log = self._file.add_channel("/log", Log)
         for instance in instances:
@@ -88,13 +75,14 @@ class McapLog:
         self._pictures: list[_Pictures] = []
         if _frame_columns(instances):
             self._pictures.append(_Pictures(self._file, instances, scenario))
-        size = CHUNK_SIZE if isinstance(to, Path) else 0  # a stream has each row at once
-        rows = max(1, size // 2 // sum(channel.size for channel in self._channels))
-        self.rows_per_chunk = rows
+        self._is_file = isinstance(to, Path)
+        self.rows_per_chunk = rows = rows_per_chunk(self._channels) if self._is_file else 1
         self._values = all_values(instances)
         self._rows = np.empty((rows, len(self._values)))
         self._times = np.empty(rows, dtype=np.int64)
         self._count = 0
+        self._latest: Array | None = None
+        """The last row that is written."""
         self._file.flush()
 
     def on_communication_point(self, t_ns: int) -> None:
@@ -102,14 +90,12 @@ class McapLog:
         self.observe_rows(np.array([t_ns], dtype=np.int64), self._values[None, :])
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:
-        """Take many rows; those that do not fill half a chunk are kept."""
-        for pictures in self._pictures:
-            pictures.observe_rows(t_ns, rows)
+        """Take many rows; those that do not fill a chunk are kept."""
         begin, most = 0, len(self._times)
         while begin < len(t_ns):
             rest = len(t_ns) - begin
             if self._count == 0 and rest >= most:
-                end = begin + min(rest, 2 * most - 1)
+                end = begin + most
                 self._write_rows(t_ns[begin:end], rows[begin:end])
             else:
                 end = begin + min(rest, most - self._count)
@@ -148,15 +134,19 @@ class McapLog:
         self._file.flush()
 
     def _write_rows(self, t_ns: Times, rows: Array) -> None:
-        for channel in self._channels:
-            channel.write(t_ns, rows)
+        changes = RowChanges(rows, self._latest)
+        for pictures in self._pictures:
+            pictures.write(t_ns, rows, changes)
+        for channel in self._channels:  # each chunk of a file can be read without the one before
+            channel.write(t_ns, rows, changes, from_first=self._is_file)
+        self._latest = rows[-1].copy()
         self._file.flush()
 
     def _write_parameters(self, instance: FmuInstance) -> None:
         ports: Ports = instance.parameters
         notes = ["parameter"] * len(ports.names)
-        message = instance.name.title().replace("_", "") + "Parameters"
-        channel = add_channel(self._file, f"/{instance.name}/parameters", message, ports.variables, notes)
+        message = message_name(instance.name, PARAMETERS)
+        channel = add_channel(self._file, f"/{instance.name}/{PARAMETERS}", message, ports.variables, notes)
         self._file.write(channel, 0, Encoder(ports.variables).encode(ports.values))
 
 
@@ -182,13 +172,18 @@ class _Pictures:
         self._last_period = -1
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_columns = self._controller_outputs.start + self._path_places
+        road = self._controller.outputs.index.get(ON_ROAD) if self._controller else None
+        self._road_columns = np.array([] if road is None else [self._controller_outputs.start + road], dtype=np.intp)
         self._path_values: Array | None = None
-        """Latest outputs that the planned path is made of."""
+        """Outputs that the path is made of which is drawn."""
+        self._path_is_drawn = False
         self._stage = scene.Surroundings.of(scenario, around)
         self._changes = self._stage.changes_ns()
 
-    def observe_rows(self, t_ns: Times, rows: Array) -> None:
+    def write(self, t_ns: Times, rows: Array, changes: RowChanges) -> None:
         """Draw what is due at these exchanges."""
+        path_changes = changes.rows_of(np.append(self._path_columns, self._road_columns))
+        self._path_is_drawn &= not len(path_changes)
         periods = t_ns // SCENE_PERIOD_NS
         due = np.flatnonzero(periods > np.append(self._last_period, periods[:-1]))
         self._last_period = int(periods[-1])
@@ -199,15 +194,16 @@ class _Pictures:
         known = [place for place, column in enumerate(self._drawn) if column is not None]
         drawn[:, known] = values[:, [column for column in self._drawn if column is not None]]
         self._file.write_rows(self._transforms, times, self._frames.rows(times, drawn))
-        for row, time in enumerate(times.tolist()):
-            if self._changes and time >= self._changes[0]:
-                self._draw_stage(time)
-            if time % TRAIL_STEP_NS < SCENE_PERIOD_NS:
-                x, y, heading = drawn[row, :3].tolist()
-                self._add_to_trail(scene.trail_pose((x, y, heading)))
+        while self._changes and times[-1] >= self._changes[0]:
+            self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
+        in_trail = np.flatnonzero(times % TRAIL_STEP_NS < SCENE_PERIOD_NS)
+        for time, (x, y, heading) in zip(times[in_trail].tolist(), drawn[in_trail, :3].tolist(), strict=True):
+            self._add_to_trail(scene.trail_pose((x, y, heading)))
             if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
                 self._draw_trail(time)
-        self._draw_paths(times, values)
+        if not self._path_is_drawn:
+            self._draw_paths(times, values)
+            self._path_is_drawn = not len(path_changes) or bool(path_changes[-1] <= due[-1])
 
     def _draw_stage(self, t_ns: int) -> None:
         self._changes = [change for change in self._changes if change > t_ns]
@@ -235,10 +231,9 @@ class _Pictures:
         """Draw the planned path wherever it changes."""
         if self._controller is None:
             return
-        first, ports = self._controller_outputs.start, self._controller.outputs
-        road = ports.index.get(ON_ROAD)
-        on_road = rows[:, first + road] > 0.0 if road is not None else np.zeros(len(rows), dtype=bool)
-        values = np.column_stack([rows.take(self._path_columns, axis=1), on_road])
+        ports = self._controller.outputs
+        on_road = rows[:, self._road_columns] > 0.0
+        values = np.hstack([rows.take(self._path_columns, axis=1), on_road])
         changes = find_changes(values, self._path_values)
         self._path_values = values[-1]
         for row in changes.tolist():
@@ -246,12 +241,6 @@ class _Pictures:
             points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
             update = scene.path_update(int(t_ns[row]), points)
             self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
-
-
-def add_channel(file: Sink, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
-    """Return a new channel whose schema is made from ``variables``."""
-    descriptors = descriptor_set(file_descriptor(message, variables, notes))
-    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
 
 
 def _frame_columns(instances: Sequence[FmuInstance]) -> list[int | None]:

@@ -36,6 +36,7 @@ from orchestrator.presentation.log.records import (
     record_head,
     record_heads,
 )
+from orchestrator.presentation.log.schema import PARAMETERS, name_prefix
 from orchestrator.simulation.cosim.declared import MAX_DESCRIPTION, MAX_ELEMENTS, MAX_ITEMS, MAX_LETTERS
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.recording import Recording, recording_of
@@ -194,28 +195,58 @@ def _metadata(data: LogFile, head: RecordHead) -> Any:
     return parse_record(Metadata, read_record(data, head)) if head.opcode == Opcode.METADATA else None
 
 
-class _Owner:
-    """The messages of one FMU's signals that are not in the recording yet."""
+class _Messages:
+    """The messages of a channel of signals that are not in the recording yet."""
 
     def __init__(self, variables: list[Variable]) -> None:
         self.variables = variables
-        self.times: list[NDArray[np.int64]] = []
-        self.rows: list[Array] = []
+        self._times: list[NDArray[np.int64]] = []
+        self._rows: list[Array] = []
         self.count = 0
 
     def add(self, times: NDArray[np.int64], rows: Array) -> None:
         """Take further rows."""
-        self.times.append(times)
-        self.rows.append(rows)
+        self._times.append(times)
+        self._rows.append(rows)
         self.count += len(times)
 
     def take(self, count: int) -> tuple[NDArray[np.int64], Array]:
         """Return the first ``count`` rows with their times, and forget them."""
-        times = self.times[0] if len(self.times) == 1 else np.concatenate(self.times)
-        rows = self.rows[0] if len(self.rows) == 1 else np.concatenate(self.rows)
-        self.times, self.rows = ([times[count:]], [rows[count:]]) if count < self.count else ([], [])
+        times, rows = self._all()
+        self._times, self._rows = ([times[count:]], [rows[count:]]) if count < self.count else ([], [])
         self.count -= count
         return times[:count], rows[:count]
+
+    def at(self, times: NDArray[np.int64]) -> Array | None:
+        """Return the values that hold at ``times``, which rise; None if some are not known. Forget those before."""
+        changes, rows = self._all()
+        places = np.searchsorted(changes, times, side="right") - 1
+        if not len(changes) or places[0] < 0 or (np.diff(changes) < 0).any():
+            return None
+        last = int(places[-1])
+        self._times, self._rows, self.count = [changes[last:]], [rows[last:]], len(changes) - last
+        return rows[places]
+
+    def _all(self) -> tuple[NDArray[np.int64], Array]:
+        if len(self._times) != 1:
+            empty = [np.empty(0, dtype=np.int64)], [np.empty((0, len(self.variables)))]
+            times, rows = (self._times, self._rows) if self._times else empty
+            self._times, self._rows = [np.concatenate(times)], [np.concatenate(rows)]
+        return self._times[0], self._rows[0]
+
+
+class _Owner:
+    """The channels of one FMU: of its signals at each exchange (""), and of those that are written on change."""
+
+    def __init__(self) -> None:
+        self.channels: dict[str, _Messages] = {}
+        self.has_exchanges = False
+        """So far."""
+
+    @property
+    def count(self) -> int:
+        """Return how many exchanges are waiting."""
+        return self.channels[""].count if self.has_exchanges else 0
 
 
 class _SignalReader:
@@ -224,8 +255,6 @@ class _SignalReader:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._owners: dict[str, _Owner] = {}
-        self._silent: dict[str, list[Variable]] = {}
-        """Of channels without a message so far."""
         self._parameters: dict[str, float] = {}
         self._variables: dict[str, Variable] = {}
         self._blocks: SignalBlocks | None = None
@@ -235,56 +264,74 @@ class _SignalReader:
         """Return what takes the messages of a channel of signals or parameters."""
         if VARIABLES not in channel.metadata:
             return None
-        owner, is_parameter = channel.topic.strip("/").partition("/")[::2]
-        variables = from_json(channel.metadata[VARIABLES])
-        decoder = Decoder(variables)
-        topic = channel.topic
+        name, group = channel.topic.strip("/").partition("/")[::2]
+        prefix = f"{name}.{name_prefix(group)}"
+        described = from_json(channel.metadata[VARIABLES])
+        variables = [item._replace(name=prefix + item.name) for item in described]
+        decoder = Decoder(described)
+        if group == PARAMETERS:
+
+            def take_parameters(times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
+                self._variables |= {item.name: item for item in variables}
+                named = zip(variables, decoder.rows(messages, self._path)[-1].tolist(), strict=True)
+                self._parameters |= {item.name: value for item, value in named}
+
+            return take_parameters
+        owner, pending = self._owners.setdefault(name, _Owner()), _Messages(variables)
+        if group in owner.channels:
+            raise BadInput(f"has two channels {channel.topic}", file=self._path)
+        owner.channels[group] = pending
 
         def take(times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
+            self._variables |= {item.name: item for item in variables}
             values = decoder.rows(messages, self._path)
-            self._variables |= {f"{owner}.{item.name}": item for item in variables}
-            if is_parameter:
-                named = zip(variables, values[-1].tolist(), strict=True)
-                self._parameters |= {f"{owner}.{item.name}": value for item, value in named}
-            else:
-                self._add(topic, owner, variables, times, values)
-
-        if not is_parameter:
-            self._silent[topic] = variables
-        return take
-
-    def _add(self, topic: str, owner: str, variables: list[Variable], times: NDArray[np.int64], values: Array) -> None:
-        if topic not in self._owners:
-            if self._blocks is not None:
+            if (times <= self._last_ns).any():
+                raise BadInput("its times do not rise", file=self._path)
+            pending.add(times, values)
+            if not group:
+                owner.has_exchanges = True
+                if all(item.has_exchanges for item in self._owners.values()):
+                    self._join()
+            if pending.count > MAX_PENDING_ROWS:
                 raise self._apart()
-            self._owners[topic] = _Owner([item._replace(name=f"{owner}.{item.name}") for item in variables])
-        self._owners[topic].add(times, values)
-        if self._owners.keys() == self._silent.keys():
-            self._join()
-        if self._owners[topic].count > MAX_PENDING_ROWS:
-            raise self._apart()
+
+        return take
 
     def _join(self) -> None:
         """Move the rows that all FMUs have to the recording."""
         count = min((item.count for item in self._owners.values()), default=0)
         if not count:
             return
-        parts = [item.take(count) for item in self._owners.values()]
-        times = parts[0][0]
-        if any((other != times).any() for other, _ in parts[1:]):
-            raise self._apart()
+        variables: list[Variable] = []
+        parts: list[Array] = []
+        times: NDArray[np.int64] | None = None
+        for owner in self._owners.values():
+            own, rows = owner.channels[""].take(count)
+            if times is not None and (own != times).any():
+                raise self._apart()
+            times = own
+            for name, messages in owner.channels.items():
+                values = messages.at(times) if name else rows
+                if values is None:
+                    raise BadInput(f"lacks values of {messages.variables[0].name}", file=self._path)
+                parts.append(values)
+                variables += messages.variables
+        assert times is not None
         if (np.diff(times, prepend=self._last_ns) <= 0).any():
             raise BadInput("its times do not rise", file=self._path)
         self._last_ns = int(times[-1])
         if self._blocks is None:
-            self._blocks = SignalBlocks([item.name for owner in self._owners.values() for item in owner.variables])
-        self._blocks.extend(times, parts[0][1] if len(parts) == 1 else np.concatenate([rows for _, rows in parts], 1))
+            self._blocks = SignalBlocks([item.name for item in variables])
+        elif len(variables) != len(self._blocks.names):
+            raise self._apart()
+        self._blocks.extend(times, parts[0] if len(parts) == 1 else np.concatenate(parts, 1))
 
     def _apart(self) -> BadInput:
         return BadInput("its instances have been seen at different times", file=self._path)
 
     def recording(self, metadata: dict[str, dict[str, str]]) -> Recording:
         """Return the recording when all messages have been taken."""
+        self._owners = {name: owner for name, owner in self._owners.items() if owner.has_exchanges}
         self._join()
         if any(item.count for item in self._owners.values()):
             raise self._apart()

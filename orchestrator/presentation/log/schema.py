@@ -6,6 +6,7 @@ mode as an enum. Field numbers follow the order of the variables.
 """
 
 import re
+from collections.abc import Iterator
 from enum import IntEnum
 from typing import Any
 
@@ -24,6 +25,10 @@ PLAIN = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*|\[\d+\])*", re.ASCII)
 Tree = dict[str, Any]
 """Field name -> place of a variable (int), message (Tree), or list of these."""
 PACKAGE = "apa"
+MIN_STRUCTURE_SIZE = 8
+"""Values of a structure that has a channel of its own: with fewer, a message costs more than they do."""
+PARAMETERS = "parameters"
+"""End of the topic of an instance's parameters."""
 
 
 def tree(names: list[str]) -> Tree:
@@ -47,6 +52,35 @@ def tree(names: list[str]) -> Tree:
             for name, place in items:
                 made[_own_name(name, taken)] = place
     return made
+
+
+def channel_places(names: list[str]) -> dict[str, list[int]]:
+    """Return the channels of an instance's signals: end of the topic -> places of their names.
+
+    A large structure has a channel of its own; the empty name, the last, has all others.
+    """
+    channels: dict[str, list[int]] = {}
+    others: list[int] = []
+    for first, content in tree(names).items():
+        places = sorted(_leaves(content))
+        if isinstance(content, dict) and len(places) >= MIN_STRUCTURE_SIZE and first != PARAMETERS:
+            channels[first] = places
+        else:
+            others += places
+    return channels | {"": sorted(others)}
+
+
+def name_prefix(channel: str) -> str:
+    """Return what the names on a channel (see ``channel_places``) lack of those of the instance's variables."""
+    return f"{channel}." if channel not in ("", PARAMETERS) else ""
+
+
+def _leaves(content: Any) -> Iterator[int]:
+    if isinstance(content, int):
+        yield content
+    else:
+        for item in content.values() if isinstance(content, dict) else content:
+            yield from _leaves(item)
 
 
 def _structure(items: list[tuple[str, int]]) -> Any:

@@ -19,8 +19,8 @@ from orchestrator.session.stream.tuning import Tuning
 
 HOST = "127.0.0.1"
 TOKEN = "apa.token"
-KEPT = ("/parameters", "/scene", "/path", "/trail")
-"""Ends of the topics of which whoever subscribes gets the latest message at once."""
+PICTURES = ("/scene", "/path", "/trail")
+"""Those of which whoever subscribes gets the latest message at once."""
 
 
 class LiveChannels:
@@ -78,14 +78,14 @@ class LiveChannels:
     def write(self, channel: int, t_ns: int, data: bytes) -> None:
         """Send one message at ``t_ns`` of simulated time."""
         to = self._channels[channel]
-        if to.topic().endswith(KEPT):
+        if to.topic() in PICTURES or to.topic().count("/") > 1:  # parameters and structures
             self._latest[to.id()] = data, t_ns
         to.log(data, log_time=t_ns)
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
         """Send messages of equal size, one per row, behind room for its header in a file."""
         for t, row in zip(t_ns.tolist(), rows[:, HEADER_SIZE:], strict=True):
-            self._channels[channel].log(row.tobytes(), log_time=t)
+            self.write(channel, t, row.tobytes())
 
     def flush(self) -> None:
         """Tell what parameters are now, if any was changed."""

@@ -51,6 +51,21 @@ def test_nothing_is_left_behind(files: dict[str, Path], tmp_path: Path, monkeypa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_sources_and_documentation_are_not_extracted(
+    files: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    instance = LocalInstance("vehicle", files["vehicle"], {}, silent)
+    instance.initialize(1_000_000_000)
+    with zipfile.ZipFile(files["vehicle"]) as archive:
+        there = {name.split("/")[0] for name in archive.namelist()}
+    (folder,) = tmp_path.iterdir()
+    kept = {path.name for path in folder.iterdir()}
+    instance.close()
+    assert kept == {"modelDescription.xml", "binaries", "resources"}
+    assert there > kept
+
+
 def test_extraction_goes_to_an_ascii_path(
     files: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -205,7 +205,7 @@ class _Plan:
         instance, every, begin = self._fmus[number], master.decimation[number], self._begins[2 * number]
         sets, gets = self._transfers[2 * number : 2 * number + 2]
         written = [place for link in master.connections if link.target == number for place in link.target_places]
-        held = np.setdiff1d(np.arange(len(instance.inputs.values)), written).astype(np.intp)
+        held = np.delete(np.arange(len(instance.inputs.values), dtype=np.intp), written)
         return InstanceC(
             component=instance.component,
             do_step=ctypes.cast(instance.do_step, Pointer),

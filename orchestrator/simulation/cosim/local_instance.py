@@ -24,6 +24,7 @@ from modelkit.model import Model
 from orchestrator.inputs.text.errors import RESOURCES, NotRunError, RunError, excerpt
 from orchestrator.simulation.cosim.fmu_instance import Ports
 from orchestrator.simulation.cosim.model_description import (
+    DESCRIPTION,
     has_variable_step,
     ports_of,
     read_description,
@@ -101,7 +102,7 @@ class LocalInstance:
         self._directory = str(new_folder("fmu"))
         co_simulation = self._description.coSimulation
         try:
-            extract(str(self.path), unzipdir=self._directory)
+            extract(str(self.path), unzipdir=self._directory, include=_is_needed)
             with LOADING:
                 self._instance = FMU2Slave(
                     guid=self._description.guid,
@@ -271,3 +272,8 @@ class LocalInstance:
 def _status_of(error: Exception) -> int:
     """Return the FMI status of FMPy's exception."""
     return int(getattr(error, "status", ERROR))
+
+
+def _is_needed(name: str) -> bool:
+    """Return whether a file of an FMU is used when it runs: its description, libraries and resources."""
+    return name == DESCRIPTION or name.startswith(("binaries/", "resources/"))

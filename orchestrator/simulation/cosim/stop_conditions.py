@@ -27,6 +27,7 @@ class Standstill:
         self._mode, self._mode_place = mode.ports.values, mode.place
         self._speed, self._speed_place = speed.ports.values, speed.place
         self._final = frozenset(condition.final(mode.ports.variables[mode.place]))
+        self._final_values = np.array(sorted(self._final), dtype=np.float64)
         self._still = condition.still
         self._wait_ns = condition.standstill_ns
         self._since: int | None = None
@@ -44,7 +45,10 @@ class Standstill:
     def first_reached(self, t_ns: Times, rows: Array) -> tuple[int, str] | None:
         """Return the first exchange at which the car has stood long enough in a final state, and ``standstill``."""
         modes, speeds = (rows[:, column] for column in self._columns)
-        stands = np.isin(modes, list(self._final)) & ~(np.abs(speeds) > self._still)
+        stands = (modes[:, None] == self._final_values).any(axis=1) & ~(np.abs(speeds) > self._still)
+        if not stands.any():
+            self._since = None
+            return None
         rows_before = np.maximum.accumulate(np.where(stands, -1, np.arange(len(stands))))
         since = t_ns[np.minimum(rows_before + 1, len(stands) - 1)]
         if self._since is not None:

@@ -63,7 +63,7 @@ def elaborate(scenario: Scenario, given: list[FmuInstance]) -> ElaboratedSystem:
         judged = [
             instance.outputs.index[name] for name in JUDGED.get(instance.name, ()) if name in instance.outputs.index
         ]
-        instance.outputs.used = np.unique(np.array([*sent, *judged], dtype=np.intp))
+        instance.outputs.used = np.array(sorted({*sent, *judged}), dtype=np.intp)
     return ElaboratedSystem(instances, connections, frozenset(fed))
 
 

@@ -59,7 +59,7 @@ def test_sources_and_documentation_are_not_extracted(
     instance.initialize(1_000_000_000)
     with zipfile.ZipFile(files["vehicle"]) as archive:
         there = {name.split("/")[0] for name in archive.namelist()}
-    (folder,) = tmp_path.iterdir()
+    (folder,) = (path.parent for path in tmp_path.rglob("modelDescription.xml"))
     kept = {path.name for path in folder.iterdir()}
     instance.close()
     assert kept == {"modelDescription.xml", "binaries", "resources"}

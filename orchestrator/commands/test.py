@@ -146,7 +146,7 @@ def _catalogue(arguments: argparse.Namespace) -> int:
     files = (arguments.junit or arguments.out / "junit.xml", arguments.out / "index.html")
     catalogue.write(*files)
     with on_interrupt(interrupt), Meter("apa test", catalogue.count, "runs") as meter:
-        catalogue.run(arguments.set, bench, arguments.out, arguments.jobs, meter.at)
+        catalogue.run(arguments.set, bench._replace(progress=meter.note), arguments.out, arguments.jobs, meter.at)
     about = catalogue.about(shlex.join(["apa", *arguments.words]))
     catalogue.write(*files, about)
     catalogue.show(about, arguments.out, arguments.json)
@@ -159,6 +159,7 @@ def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts", 
     bench = bench if look is None else bench._replace(look=look)
     tested = verdicts.tested
     with on_interrupt(interrupt), Meter("apa test", len(names), "scenarios") as meter:
+        bench = bench._replace(progress=meter.note)
         for item in run_tests(names, arguments.set, bench, arguments.out, arguments.jobs):
             tested.append(item)
             verdicts.write()

@@ -26,8 +26,8 @@ CODES = (0, 1, 2, 130)
 
 SAID = ("apa", "FAIL  ", "not run  ")
 """Begins what is said of bad input, by a command or of a scenario of a suite."""
-PROGRESS = re.compile(r": (\d+) of (\d+) runs")
-"""What a study says while it goes on."""
+PROGRESS = re.compile(r"(\S+) of \S+ (?:runs|s)\b")
+"""What a study, a run or a test says while it goes on."""
 
 
 class Hangs(BaseException):
@@ -35,7 +35,7 @@ class Hangs(BaseException):
 
 
 class GoesOn(BaseException):
-    """It takes long because a million runs were asked for, and says how far it is."""
+    """It takes long because a million runs, or long ones, were asked for, and says how far it is."""
 
 
 class Answer(NamedTuple):
@@ -78,8 +78,8 @@ def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
 
 
 def goes_on(said: str) -> bool:
-    """Return whether runs were made, and are still made when the time is over: two lines, the later one with more."""
-    done = [int(at[1]) for at in PROGRESS.finditer(said)]
+    """Return whether something was done, and still is when the time is over: two lines, the later one with more."""
+    done = [float(at[1]) for at in PROGRESS.finditer(said)]
     return len(done) > 1 and done[-1] > done[-2]
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from orchestrator.inputs.text.errors import INTERRUPTED
 from tests.fuzz.limits import ask
 from tests.fuzz.logs import retold
 from tests.fuzz.more_texts import COLUMNS, STEP_TEST
@@ -107,3 +108,18 @@ def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:
     done = subprocess.run([*command, "--finds", str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert " 0 found" in done.stdout
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # the log is left open
+@pytest.mark.parametrize(
+    "words", [["run", "guo2015-case4", "--no-page"], ["test", "guo2015-case4"]], ids=lambda words: words[0]
+)
+def test_a_run_that_is_long_by_request_does_not_hang(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("orchestrator.inputs.text.console.PERIOD", 0.01)
+    answer = ask(
+        [*words, "--set", "step=1e-8", "--set", "stop_time=0.02", "--fmus", "none", "--out", str(tmp_path)], 1.0
+    )
+    assert not answer.mistake, answer.mistake
+    assert answer.code == INTERRUPTED

@@ -4,6 +4,7 @@ import importlib
 import json
 import os
 import pkgutil
+import re
 import shutil
 import signal
 import subprocess
@@ -237,6 +238,35 @@ def test_something_long_says_so_where_there_is_no_terminal(
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "my study: 200 of 300 runs, 9/s"
     assert lines[1].startswith("building: 0 s")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["run", DEMO, "--no-page"], r"demo: (\S+) of 0.002 s"),
+        (["test", DEMO], r"apa test: 0 of 1 scenarios, demo at (\S+) of 0.002 s"),
+        (["test", "{open_loop}"], r"apa test: 0 of 1 scenarios, standing at (\S+) of 0.002 s"),
+    ],
+)
+def test_a_long_run_says_how_far_it_is_however_small_its_steps(
+    words: list[str],
+    expected: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("orchestrator.inputs.text.console.PERIOD", 0.0)
+    monkeypatch.setattr("orchestrator.inputs.text.console.LONGEST", 0.0)
+    monkeypatch.setattr("orchestrator.session.run_clock.PERIOD", 0.0)
+    file = tmp_path / "standing.yaml"
+    expectations = "[{id: a, signal: speed, always: {max: 1}}]"
+    file.write_text(f"model: vehicle\nstep: 0.01 ms\nstop_time: 2 ms\nexpect: {expectations}\n")
+    words = [word.format(open_loop=file) for word in words]
+    more = ["--set", "step=0.01 ms", "--set", "stop_time=2 ms"] if DEMO in words else []
+    main([*words, *more, "--fmus", "none", "--out", str(tmp_path / "out")])
+    times = [float(text) for text in re.findall(expected, capsys.readouterr().err)]
+    assert len(times) > 100
+    assert times == sorted(times)
 
 
 @pytest.mark.parametrize(

@@ -135,11 +135,17 @@ def _tell(text: str, over: threading.Event) -> None:
         period = min(2.0 * period, LONGEST)
 
 
+def progress_text(done: float, total: float, unit: str) -> str:
+    """Return how much of ``total`` is done; what is less than one has two digits."""
+    return f"{done:.0f} of {total:.0f} {unit}" if done >= 1.0 else f"{done:.2g} of {total:g} {unit}"
+
+
 class Meter:
     """How far something is: a bar on a terminal, elsewhere a line now and then."""
 
     def __init__(self, title: str, total: float, unit: str) -> None:
         self._title, self._total, self._unit = title, total, unit
+        self._done = 0.0
         self._period = PERIOD
         self._next = time.monotonic() + PERIOD
         self._bar: Progress | None = None
@@ -161,10 +167,15 @@ class Meter:
 
     def at(self, done: float, more: str = "") -> None:
         """Show that ``done`` of the total is done; ``more`` is said beside it."""
-        text = f"{done:.0f} of {self._total:.0f} {self._unit}{', ' + more if more else ''}"
+        self._done = done
+        text = f"{progress_text(done, self._total, self._unit)}{', ' + more if more else ''}"
         if self._bar is not None:
             self._bar.update(self._task, completed=done, at=text)
         elif time.monotonic() >= self._next:
             self._period = min(2.0 * self._period, LONGEST)
             self._next = time.monotonic() + self._period
             say(f"{self._title}: {text}")
+
+    def note(self, more: str) -> None:
+        """Show ``more`` beside what was done last."""
+        self.at(self._done, more)

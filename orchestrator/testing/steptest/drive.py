@@ -17,7 +17,7 @@ from orchestrator.session.foreign import FOREIGN, ImportedFmus, fmu_of, paramete
 from orchestrator.session.session import NOBODY
 from orchestrator.session.trust import require_trust
 from orchestrator.session.user_model_instance import is_model
-from orchestrator.simulation.cosim.algorithm import CoSimulation, last_exchange
+from orchestrator.simulation.cosim.algorithm import CoSimulation, Interrupt, Observer, last_exchange
 from orchestrator.simulation.cosim.fmu_files import fmu_beside, fmu_files
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance
 from orchestrator.simulation.cosim.local_instance import LocalInstance
@@ -32,7 +32,14 @@ FMU, MODEL_FILE, OTHER = ".fmu", ".py", "model"
 """How files of models end; the instance's name of a model that is none of ours."""
 
 
-def drive(test: StepTest, kind: str, foreign: ImportedFmus = NOBODY, model: str = "") -> Recording:
+def drive(
+    test: StepTest,
+    kind: str,
+    foreign: ImportedFmus = NOBODY,
+    model: str = "",
+    observers: tuple[Observer, ...] = (),
+    interrupt: Interrupt | None = None,
+) -> Recording:
     """Return the recording of a test.
 
     ``kind``: which FMU of ours, or ``none``; ``foreign``: FMUs of others in the place of ours; ``model``: this one in
@@ -49,7 +56,8 @@ def drive(test: StepTest, kind: str, foreign: ImportedFmus = NOBODY, model: str 
         player = _Player(instance, _inputs(test, instance))
         master.manipulators.append(player)
         recorder = Recorder([instance], last_exchange(test.step_ns, test.stop_ns) + 1)
-        master.observers.append(recorder)
+        master.observers += [recorder, *observers]
+        master.interrupt = interrupt or Interrupt()
         player.apply(0)
         master.initialize()
         end = master.run()

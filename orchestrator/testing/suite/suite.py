@@ -17,6 +17,7 @@ from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.inputs.scenario.requirements import Requirement
 from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import progress_text
 from orchestrator.inputs.text.errors import PARKED, RESOURCES, BadInput, NotRunError
 from orchestrator.inputs.text.failures import exit_code_and_message
 from orchestrator.inputs.text.locked_folder import lock_folder
@@ -24,6 +25,7 @@ from orchestrator.inputs.text.readable import changes_text
 from orchestrator.presentation.report.results import LOG, PAGE, is_shown, write_page, write_summary
 from orchestrator.session.foreign import Files, ImportedFmus, load_bound_scenario
 from orchestrator.session.provenance import versions
+from orchestrator.session.run_clock import RunClock
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.recording import Recording
@@ -93,6 +95,12 @@ class SuiteConfig(NamedTuple):
     """Receives each run with third-party FMUs in it."""
     started: Mapping[str, Any] = MappingProxyType({})
     """When and by which command the test was started, for the logs."""
+    progress: Callable[[str], None] = lambda text: None
+    """Receives how far the scenario in hand is, a few times a second."""
+
+    def clock(self, name: str, stop_time: float) -> RunClock:
+        """Return the observer that reports the progress of a scenario."""
+        return RunClock(lambda t: self.progress(f"{name} at {progress_text(t, stop_time, 's')}"))
 
 
 def select_scenarios(names: list[str]) -> list[str]:
@@ -166,6 +174,7 @@ def _evaluate(scenario: Scenario, ignored: list[str], bench: SuiteConfig, folder
             bench.files,
             kind=bench.kind,
             log=folder / LOG,
+            observers=(bench.clock(scenario.name, scenario.longest),),
             interrupt=bench.interrupt,
             warn=bench.warn,
             foreign=bench.foreign,
@@ -192,7 +201,9 @@ def _step_tested(test: StepTest, sets: list[str], bench: SuiteConfig, out: Path,
         )
     scenario = Scenario(name=_nameable(test.name), title=test.title or f"step test of {test.model}")
     _claim(scenario.name, taken, "test", test.file)
-    recording, checks = run_step_test(test, bench.kind, bench.foreign)
+    recording, checks = run_step_test(
+        test, bench.kind, bench.foreign, (bench.clock(scenario.name, test.stop_time),), bench.interrupt
+    )
     bench.look(scenario, bench.foreign.files, recording)
     folder = out / scenario.name
     with lock_folder(folder):

@@ -265,11 +265,11 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
     """Return the search with the slot found on one side (1 left, -1 right), or why the one there is rejected."""
     local_map = memory.perception.local_map
-    angled = find_angled_row(local_map.landmarks, local_map.pose, side, params.mapping)
+    rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
+    angled = find_angled_row(local_map.landmarks, rays, local_map.pose, side, params.mapping)
     row = angled
     if angled.used == 0:
         row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
-    rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     found = find_slot(row, local_map.landmarks, rays, outline, params.slot, params.mapping)
     if found.type == SlotType.NONE or not _has_passed(found, local_map.pose, params):

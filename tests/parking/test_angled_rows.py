@@ -9,6 +9,7 @@ from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.landmark import LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.angled_row import find_angled_row
@@ -44,13 +45,15 @@ def angled_cars(degrees: float) -> list[Box]:
     return [Box(x + place, y, -turn, LENGTH, WIDTH) for place in places]
 
 
-def passed(boxes: list[Box], end: float, side: float = -1.0) -> Passed:
+def passed(boxes: list[Box], end: float, side: float = -1.0, heading: float = 0.0) -> Passed:
+    """Pass cars ``side`` of the road until ``end``, at an angle of ``heading`` [rad] to their row."""
     local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
     boxes = boxes if side < 0.0 else [box._replace(y=-box.y, heading=-box.heading) for box in boxes]
-    start = Pose(-11.0, -side * (CAR.width / 2 + 1.2), 0.0)
+    start = Pose(-11.0, -side * (CAR.width / 2 + 1.2 + 11.0 * math.tan(heading)), heading * side)
     for _, pose, readings in drive_past(boxes, start, end + 11.0, 1, speed=1.5):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
-    return Passed(local_map, pose, find_angled_row(local_map.landmarks, pose, side, params))
+    rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
+    return Passed(local_map, pose, find_angled_row(local_map.landmarks, rays, pose, side, params))
 
 
 def slot_in(found: Passed, wanted: int = SlotKind.NONE) -> SlotCandidate:
@@ -84,6 +87,50 @@ def test_a_slot_in_an_angled_row_is_found_with_its_direction(degrees: float, end
     x, y = goal.x + ahead * math.cos(goal.heading), goal.y + ahead * math.sin(goal.heading)
     middle = Pose(0.5 * LENGTH * math.cos(turn), -side * angled_cars(degrees)[0].y, into)
     assert abs(point_to_frame(x, y, middle).y) < 0.35
+
+
+@pytest.mark.parametrize("degrees", [45, 135])
+def test_a_row_is_found_on_a_way_past_that_is_oblique_to_it(degrees: float) -> None:
+    slot = slot_in(passed(angled_cars(degrees), 8.9, -1.0, math.radians(-8.0)))
+    assert (slot.type, slot.reason) == (SlotType.PERPENDICULAR, Reason.NONE)
+    assert slot.is_nose_in == (degrees < 90)
+
+
+def test_the_sides_of_oblique_cars_are_mapped_where_the_boundary_of_the_cone_meets_them() -> None:
+    """Neither side of a car at 45 deg has the foot of a perpendicular in a cone of 30 deg."""
+    turn = math.radians(45.0)
+    cars = angled_cars(45)
+    landmarks = passed(cars, 8.9).local_map.landmarks
+    sides = [one for one in landmarks if one.type == LandmarkType.SEGMENT and length_of(one) > 0.6]
+    assert len(sides) >= 6
+    for side in sides:
+        off = math.remainder(side.heading + turn, 0.5 * math.pi)
+        assert abs(off) < math.radians(3.0)
+        for end in (start_point(side), end_point(side)):
+            inside = [point_to_frame(end.x, end.y, Pose(car.x, car.y, car.heading)) for car in cars]
+            distance = min(max(abs(at.x) - 0.5 * LENGTH, abs(at.y) - 0.5 * WIDTH) for at in inside)
+            assert abs(distance) < 0.2
+
+
+def test_a_pillar_before_a_car_narrows_the_slot_by_no_more_than_it_is_wide() -> None:
+    """Of a pillar a corner is seen as of a car; what was observed free behind it tells that it is none."""
+    turn, off, back = math.radians(45.0), 0.5 * OPENING + 0.2, 0.5 * LENGTH - 0.8
+    cars = [car._replace(x=car.x + math.copysign(0.6 / math.sin(turn), car.x - 1.5)) for car in angled_cars(45)]
+    x, y = 0.5 * LENGTH * math.cos(turn), cars[0].y
+    pillars = [
+        Box(
+            x - back * math.cos(turn) + sense * off * math.sin(turn),
+            y + back * math.sin(turn) + sense * off * math.cos(turn),
+            -turn,
+            0.4,
+            0.4,
+        )
+        for sense in (-1.0, 1.0)
+    ]
+    slot = slot_in(passed(cars + pillars, 9.6))
+    assert (slot.type, slot.reason) == (SlotType.PERPENDICULAR, Reason.NONE)
+    assert slot.is_nose_in
+    assert OPENING - 0.5 < slot.ahead.start - slot.behind.end < OPENING + 0.7
 
 
 def test_the_driver_chooses_how_to_enter() -> None:

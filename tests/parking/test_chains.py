@@ -11,7 +11,7 @@ from controller_fmu.parking.map.chain_update import (
     edge_guess,
     first_of_body,
     is_better,
-    is_in_view,
+    is_explained,
     same_side,
 )
 from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
@@ -110,8 +110,8 @@ def test_echoes_off_the_boundary_of_the_cone_make_no_side() -> None:
         measured = 1.6 / math.cos(turn - half)
         chain = begin_chain(sensor, measured, True) if chain.used == 0 else append_echo(chain, sensor, measured)
     side = Landmark(LandmarkType.SEGMENT, 0.0, 0.4, 0.0, start=0.2, end=2.0)
-    assert not is_in_view(chain, side, sensor)
-    assert is_in_view(chain_past(0.0, 1.8, 0.0), side._replace(y=0.0, start=0.0, end=1.8), DOWN)
+    assert not is_explained(chain, side, sensor, 1e-4)
+    assert is_explained(chain_past(0.0, 1.8, 0.0), side._replace(y=0.0, start=0.0, end=1.8), DOWN, 1e-4)
 
 
 def test_a_chain_ends_at_a_jump_and_after_lost_echoes() -> None:

@@ -34,7 +34,15 @@ from controller_fmu.parking.map.landmark import (
     start_point,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.map.segment_fit import ROBUST_SIGMA, EndGuess, SegmentFit, SegmentGuess, fit_segment
+from controller_fmu.parking.map.segment_fit import (
+    ROBUST_SIGMA,
+    SURFACE_DEVIATION,
+    EndGuess,
+    SegmentFit,
+    SegmentGuess,
+    fit_segment,
+)
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predicted_range_to_segment
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
 from modelkit.maths import wrap_angle
 
@@ -177,7 +185,9 @@ def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, par
             update = update._replace(chain=from_echo(chain, at))
             known = _with_edges(second, True, ends_at_edge)
             return _put(update, known, update.chain.used, params)
-    if whole.chi_square > MAX_MISFIT * chain.used or not is_in_view(chain, whole.landmark, reading.sensor):
+    if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
+        chain, whole.landmark, reading.sensor, reading.variance
+    ):
         return update._replace(chain=update.chain._replace(fitted=update.chain.used))
     known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
     return _put(update, known, update.chain.used, params)
@@ -195,22 +205,24 @@ def first_of_body(chain: EchoChain, variance: float) -> int:
     return top if is_of_other else 0
 
 
-def is_in_view(chain: EchoChain, segment: Landmark, sensor: SensorPose) -> bool:
-    """Return whether a segment's nearest points lie in the sensor's cone, for three of four echoes of its chain.
+def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, variance: float) -> bool:
+    """Return whether a segment returns three of four echoes of its chain where the ``sensor`` measured them.
 
-    Else the echoes came from where the cone's boundary met a side on which no foot of a perpendicular is in view. That
-    point moves along the side as the vehicle turns, so the ranges are those of another line.
+    Else they came from several bodies, or from where the cone's boundary met a side turned away from the sensor: that
+    point moves along the side, so the ranges are those of another line. The boundary may be off by ``CONE_SIGMA``.
     """
+    a = start_point(segment)
+    b = end_point(segment)
+    wide = sensor._replace(cone_cos=sensor.cone_cos - VIEW_TOLERANCE, cone_sin=sensor.cone_sin + CONE_SIGMA)
+    tolerance = ROBUST_SIGMA * math.sqrt(variance + SURFACE_DEVIATION * SURFACE_DEVIATION)
     outside = 0
     for number in range(CHAIN):
         if number < chain.used:
             echo = chain.echoes[number]
-            along = min(max(along_of(segment, echo.x, echo.y), segment.start), segment.end)
-            point = segment_point(segment, along)
-            dx = point.x - echo.x
-            dy = point.y - echo.y
-            ahead = dx * echo.axis_x + dy * echo.axis_y
-            if ahead < (sensor.cone_cos - VIEW_TOLERANCE) * math.sqrt(dx * dx + dy * dy):
+            at = wide._replace(x=echo.x, y=echo.y, axis_x=echo.axis_x, axis_y=echo.axis_y)
+            predicted_echo = predicted_range_to_segment(at, a, b)
+            opening = CONE_SIGMA * echo.range if predicted_echo.origin == EchoOrigin.CONE_EDGE else 0.0
+            if abs(predicted_echo.distance - echo.range) > tolerance + opening:
                 outside += 1
     return 4 * outside <= chain.used
 
@@ -239,8 +251,20 @@ def _fit_part(
     if not ends.is_edge:
         b_guess = EndGuess(end, OPEN_SIGMA, ends.inset)
     if towards < 0.0:
-        return fit_segment(chain, first, last, SegmentGuess(line, b_guess, a_guess), reading.variance)
-    return fit_segment(chain, first, last, SegmentGuess(line, a_guess, b_guess), reading.variance)
+        guess = SegmentGuess(line, b_guess, a_guess)
+        return _as_observed(fit_segment(chain, first, last, guess, reading.variance), b, a, ends, begins)
+    guess = SegmentGuess(line, a_guess, b_guess)
+    return _as_observed(fit_segment(chain, first, last, guess, reading.variance), a, b, begins, ends)
+
+
+def _as_observed(fit: SegmentFit, start: ChainEcho, end: ChainEcho, starts: ChainEnd, ends: ChainEnd) -> SegmentFit:
+    """Return a fit that goes on, at an end that is no edge, only as far as its outermost echo shows the line."""
+    segment = fit.landmark
+    low = segment.start if starts.is_edge else max(segment.start, along_of(segment, start.x, start.y))
+    high = segment.end if ends.is_edge else min(segment.end, along_of(segment, end.x, end.y))
+    if low >= high:
+        return fit
+    return fit._replace(landmark=segment._replace(start=low, end=high))
 
 
 def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: float, step: float) -> EndGuess:

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 
-RAYS = 48
+RAYS = 80
 """Kept for each side."""
 RAY_SPACING = 0.2
-"""Distance [m] between the sensor positions of two kept rays: RAYS of them reach back 10 m, a slot and a car."""
+"""Distance [m] between the sensor positions of two kept rays: they reach back 16 m, a slot at 30 deg and a car to each
+side of it."""
 RAY_MARGIN = 0.1
 """Of a ray, the last [m] are not taken as free: ten times the noise, and what the odometry drifts over a slot."""
 MIN_RAYS = 2

@@ -17,6 +17,7 @@ from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, length_of
+from controller_fmu.parking.map.oblique_side import ConeBoundaries, ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.visibility import (
@@ -66,6 +67,8 @@ class LandmarkMap(NamedTuple):
     landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
     chains: tuple[EchoChain, ...] = (EchoChain(),) * SIDE_SENSORS
     """Of the sensors on the flanks."""
+    boundaries: tuple[ConeBoundaries, ...] = (ConeBoundaries(),) * SIDE_SENSORS
+    """Of their cones, where oblique sides are measured."""
     free_space: FreeSpace = FreeSpace()
     missed: MissedEchoes = MissedEchoes()
     pose: Pose = Pose()
@@ -115,10 +118,15 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
     """Return the map after a reading of a sensor on a flank, which passes sides: chains of echoes."""
     at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
     reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
+    before = local_map.boundaries
+    oblique = update_oblique_sides(ObliqueUpdate(local_map.landmarks, before[at]), reading, params)
+    local_map = local_map._replace(
+        landmarks=oblique.landmarks, boundaries=before[:at] + (oblique.boundaries,) + before[at + 1 :]
+    )
     event = chain_event(local_map.chains[at], reading)
-    chain = next_chain(local_map.chains[at], reading, event)
+    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], reading, event)
     fits = is_fit_due(chain, reading)
-    if fits or event != ChainEvent.CONTINUES:
+    if not oblique.is_oblique and (fits or event != ChainEvent.CONTINUES):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
         if event != ChainEvent.CONTINUES:
             update = finish_chain(update, reading, event == ChainEvent.ENDS_AT_EDGE, params)

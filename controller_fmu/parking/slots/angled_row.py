@@ -2,14 +2,16 @@
 
 In that frame the cars stand as in a perpendicular row, but the road has a slope. Of a car the sensors show the corner
 nearest to the road, and parts of the end and of the flank that meet there. The sides give the direction modulo a right
-angle; which of the two is the flank's follows from the lengths of both and from the distance of the corners, compared
-by log-likelihood. The far end of a car's face is hidden; it is as far off as a car is wide.
+angle; which of the two is the flank's follows from the log-likelihood of how long both are, of how far apart the cars
+stand, and of what was observed free where the car's body would be. The corners that stand out most are on one line,
+the row's: what lies deeper is no car of the row.
 """
 
 import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.map.free_space import Ray, is_free
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
@@ -21,8 +23,8 @@ from controller_fmu.parking.slots.candidate import (
     CAR_WIDTH,
     CAR_WIDTH_SIGMA,
     DECIDED,
-    MERGED_LENGTH,
     length_log_likelihood,
+    row_point,
 )
 from controller_fmu.parking.slots.row import (
     ASKEW_VARIANCE,
@@ -30,7 +32,6 @@ from controller_fmu.parking.slots.row import (
     MEMBERS,
     MIN_SIDE,
     NO_MEMBER,
-    ROW_DEPTH,
     RowMember,
     SlotRow,
     side_as_member,
@@ -38,6 +39,25 @@ from controller_fmu.parking.slots.row import (
 from modelkit.geometry import Point
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
+
+MAX_CORNERS = 16
+"""Corners at the road that are kept, the last ones passed."""
+LINE_DEPTH = 0.7
+"""Cars stand up to this far [m] off the row's line, staggered or misaligned; the next corner of a front lies deeper."""
+LINE_LENGTH = 2.0
+"""Corners that tell the line's direction lie at least so far apart [m]: they are of two cars."""
+MIN_CAR_SIDE = 0.6
+"""A shorter side [m] may be a pillar's."""
+POST_WEIGHT = 0.2
+"""A corner without a side speaks for the line as so much [m] of a side does."""
+BODY_DEPTHS = (0.1, 0.25, 0.4, 0.55, 0.7)
+BODY_FRACTIONS = (0.3, 0.7)
+"""Points of a car's body at these fractions of its length and width."""
+FREE_BODY = 1.0
+MAX_FREE_BODY = 5
+"""Log of the likelihood of a point of a body that was observed free, of so many at most."""
+POST_WIDTH = 0.4
+"""Of a pillar [m]."""
 
 
 class ObliqueSides(NamedTuple):
@@ -51,17 +71,59 @@ class ObliqueSides(NamedTuple):
     """Of all sides along the road [m]."""
 
 
-def find_angled_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:
+class RoadCorner(NamedTuple):
+    """The end of a side that is nearest to the road, in the frame of a row [m]: along the row, and deep."""
+
+    along: float = 0.0
+    deep: float = 0.0
+    length: float = 0.0
+    """Of the side [m]; 0 of a point."""
+    is_flank: bool = False
+    is_complete: bool = False
+    """The side's other end has been observed, too."""
+    tilt: float = 0.0
+    """How far the side is turned against the frame [rad]."""
+    sigma: float = 0.0
+    weight: float = 0.0
+    """How much it speaks for the row's line; 0: none."""
+
+
+class CornerLine(NamedTuple):
+    """The line that a row's corners are on, in its frame: deep = at + slope along."""
+
+    slope: float
+    at: float
+
+
+class AngledRow(NamedTuple):
+    """A row whose slots lead in one direction, and its log-likelihood."""
+
+    row: SlotRow
+    log_likelihood: float
+
+
+def find_angled_row(
+    landmarks: tuple[Landmark, ...], rays: tuple[Ray, ...], vehicle: Pose, side: float, params: MappingParams
+) -> SlotRow:
     """Return the angled row on one side (1 left, -1 right) of a vehicle that drives along it; empty: there is none."""
     sides = oblique_sides(landmarks, vehicle, side, params)
     if sides.length <= sides.along:
         return SlotRow(vehicle, side)
-    forward = _row_of(landmarks, vehicle, side, sides.heading, 1.0, params)
-    backward = _row_of(landmarks, vehicle, side, sides.heading, -1.0, params)
-    ratio = _log_likelihood(landmarks, forward, vehicle, params) - _log_likelihood(landmarks, backward, vehicle, params)
+    into = sides.heading - 0.5 * PI if side < 0.0 else sides.heading
+    forward = _row_into(vehicle, side, into)
+    backward = _row_into(vehicle, side, into + side * 0.5 * PI)
+    forwards = _row_of(_corners(landmarks, forward, vehicle, params), rays, forward, 1.0)
+    backwards = _row_of(_corners(landmarks, backward, vehicle, params), rays, backward, -1.0)
+    ratio = forwards.log_likelihood - backwards.log_likelihood
     if abs(ratio) < DECIDED:
         return SlotRow(vehicle, side)
-    return forward if ratio > 0.0 else backward
+    return forwards.row if ratio > 0.0 else backwards.row
+
+
+def _row_into(vehicle: Pose, side: float, into: float) -> SlotRow:
+    """Return an empty row whose slots lead ``into`` [rad] against the vehicle's path."""
+    turn = into - side * 0.5 * PI
+    return SlotRow(vehicle._replace(heading=vehicle.heading + turn), side, slope=-math.tan(turn))
 
 
 def oblique_sides(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> ObliqueSides:
@@ -90,10 +152,10 @@ def _is_oblique(landmark: Landmark, vehicle: Pose, side: float, params: MappingP
     if landmark.type != LandmarkType.SEGMENT or not is_confirmed(landmark, params) or length_of(landmark) < MIN_SIDE:
         return False
     off = abs(wrap_angle(4.0 * (landmark.heading - vehicle.heading))) / 4.0
-    return off > MAX_TILT and side * _corner(landmark, vehicle, side).y > 0.0
+    return off > MAX_TILT and side * _nearest_end(landmark, vehicle, side).y > 0.0
 
 
-def _corner(landmark: Landmark, vehicle: Pose, side: float) -> Point:
+def _nearest_end(landmark: Landmark, vehicle: Pose, side: float) -> Point:
     """Return the end of a landmark that is nearest to the road, in the frame of the vehicle."""
     a = start_point(landmark)
     b = end_point(landmark)
@@ -102,90 +164,190 @@ def _corner(landmark: Landmark, vehicle: Pose, side: float) -> Point:
     return p if side * p.y < side * q.y else q
 
 
-def _row_of(
-    landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, heading: float, lean: float, params: MappingParams
-) -> SlotRow:
-    """Return the row whose slots lead forward (``lean`` 1) or backward (-1), from ahead to behind."""
-    into = heading - 0.5 * PI if side < 0.0 else heading
-    into = into if lean > 0.0 else into + side * 0.5 * PI
-    turn = into - side * 0.5 * PI
-    frame = vehicle._replace(heading=vehicle.heading + turn)
-    nearest = NO_MEMBER
-    for number in range(LANDMARKS):
-        if _is_oblique(landmarks[number], vehicle, side, params):
-            nearest = min(nearest, side * _corner(landmarks[number], vehicle, side).y)
-    row = SlotRow(frame, side, slope=-math.tan(turn))
-    last = NO_MEMBER
-    for _ in range(LANDMARKS):
-        best = -NO_MEMBER
-        front = 0.0
-        sigma = 0.0
-        for number in range(LANDMARKS):
-            landmark = landmarks[number]
-            corner = _corner(landmark, vehicle, side)
-            is_corner = landmark.type == LandmarkType.POINT and is_confirmed(landmark, params)
-            if is_corner or _is_oblique(landmark, vehicle, side, params):
-                at = point_to_frame(corner.x, corner.y, Pose(0.0, 0.0, turn))
-                is_of_row = nearest - ROW_DEPTH < side * corner.y < nearest + ROW_DEPTH
-                if is_of_row and best < at.x < last:
-                    best = at.x
-                    front = side * at.y
-                    sigma = math.sqrt(max(landmark.start_variance, landmark.end_variance))
-        if best <= -NO_MEMBER:
-            return row
-        last = best
-        row = _with_car(row, _car_at(best, front, lean, sigma), lean)
-    return row
-
-
-def _car_at(corner: float, front: float, lean: float, sigma: float) -> RowMember:
-    """Return a car of which the corner at the road is known; the other end of its face is a width off."""
-    start = corner - CAR_WIDTH if lean > 0.0 else corner
-    start_sigma = CAR_WIDTH_SIGMA if lean > 0.0 else sigma
-    end_sigma = sigma if lean > 0.0 else CAR_WIDTH_SIGMA
-    return RowMember(start, start + CAR_WIDTH, front, True, True, front, front, start_sigma, end_sigma)
-
-
-def _with_car(row: SlotRow, car: RowMember, lean: float) -> SlotRow:
-    """Return the row with a car farther behind; one whose corner is on the last car's flank or face is that car.
-
-    Of the corners of one car that at the road is kept: of a flank the nearer one, of a face that which leads there.
-    """
-    at = max(row.used - 1, 0)
-    before = row.members[at]
-    distance = before.start - car.start
-    is_face = distance < CAR_WIDTH + 2.0 * CAR_WIDTH_SIGMA and abs(before.front - car.front) < 0.5 * ROW_DEPTH
-    if row.used > 0 and (is_face or distance < 0.5 * CAR_WIDTH):
-        is_better = lean < 0.0 if is_face else car.front < before.front
-        if not is_better:
-            return row
-    elif row.used < MEMBERS:
-        at = row.used
-    else:
-        return row
-    return row._replace(
-        members=tuple(car if number == at else row.members[number] for number in range(MEMBERS)),
-        used=at + 1,
-    )
-
-
-def _log_likelihood(landmarks: tuple[Landmark, ...], row: SlotRow, vehicle: Pose, params: MappingParams) -> float:
-    """Return the log-likelihood of a row by the lengths of flanks and ends, and by how far apart its cars stand."""
+def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow, lean: float) -> AngledRow:
+    """Return a row whose slots lead forward (``lean`` 1) or backward (-1), from ahead to behind."""
+    line = _line_of(corners, row.side * row.slope)
+    row = row._replace(slope=row.side * line.slope)
     total = 0.0
+    bay = NO_MEMBER
+    last = NO_MEMBER
+    last_car = NO_MEMBER
+    for _ in range(MEMBERS):
+        first = _next_corner(corners, line, last)
+        if first > -NO_MEMBER:
+            last = first - 0.5 * CAR_WIDTH
+            car = _car_of(corners, line, first, lean, row.side)
+            free = _free_body(row, car, rays)
+            if _longest_side(corners, line, first) > MIN_CAR_SIDE:
+                total += _side_log_likelihood(corners, line, first) - FREE_BODY * min(free, MAX_FREE_BODY)
+                bay = min(bay, last_car - car.start)
+                last_car = car.start
+            elif free > 0:
+                car = _as_post(car, lean)
+            row = row._replace(
+                members=tuple(car if number == row.used else row.members[number] for number in range(MEMBERS)),
+                used=row.used + 1,
+            )
+    total += length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA) if bay < 0.5 * NO_MEMBER else 0.0
+    return AngledRow(row, total)
+
+
+def _next_corner(corners: tuple[RoadCorner, ...], line: CornerLine, last: float) -> float:
+    """Return where [m] the next corner on the row's line behind ``last`` is; -``NO_MEMBER``: there is none."""
+    first = -NO_MEMBER
+    for number in range(MAX_CORNERS):
+        if _is_on_line(corners[number], line) and first < corners[number].along < last:
+            first = corners[number].along
+    return first
+
+
+def _corners(
+    landmarks: tuple[Landmark, ...], row: SlotRow, vehicle: Pose, params: MappingParams
+) -> tuple[RoadCorner, ...]:
+    """Return the corners at the road of oblique sides and points beside the vehicle."""
+    corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
     for number in range(LANDMARKS):
         landmark = landmarks[number]
-        if _is_oblique(landmark, vehicle, row.side, params):
-            is_end = abs(math.sin(landmark.heading - row.frame.heading)) < abs(
-                math.cos(landmark.heading - row.frame.heading)
+        is_side = _is_oblique(landmark, vehicle, row.side, params)
+        is_point = landmark.type == LandmarkType.POINT and is_confirmed(landmark, params)
+        end = _nearest_end(landmark, vehicle, row.side)
+        if is_side or (is_point and row.side * end.y > 0.0):
+            at = point_to_frame(end.x, end.y, Pose(0.0, 0.0, row.frame.heading - vehicle.heading))
+            off = landmark.heading - row.frame.heading
+            corner = RoadCorner(
+                at.x,
+                row.side * at.y,
+                length_of(landmark),
+                is_side and abs(math.sin(off)) > abs(math.cos(off)),
+                landmark.start_known and landmark.end_known,
+                0.25 * wrap_angle(4.0 * off) if is_side else 0.0,
+                math.sqrt(landmark.xx + landmark.yy),
+                max(length_of(landmark), POST_WEIGHT),
             )
-            mean = CAR_WIDTH if is_end else CAR_LENGTH
-            sigma = CAR_WIDTH_SIGMA if is_end else CAR_LENGTH_SIGMA
-            length = length_of(landmark)
-            if not (landmark.start_known and landmark.end_known):
-                length -= 0.5 * MERGED_LENGTH
-            total += length_log_likelihood(length, False, mean, sigma)
-    nearest = NO_MEMBER
-    for number in range(MEMBERS - 1):
-        if number + 1 < row.used:
-            nearest = min(nearest, row.members[number].start - row.members[number + 1].start)
-    return total + (length_log_likelihood(nearest, True, BAY_WIDTH, BAY_SIGMA) if nearest < NO_MEMBER else 0.0)
+            corners = corners[1:] + (corner,)
+    return corners
+
+
+def _line_of(corners: tuple[RoadCorner, ...], slope: float) -> CornerLine:
+    """Return the line through two corners that most others are on; of a single car one of the ``slope`` given."""
+    best = CornerLine(slope, NO_MEMBER)
+    for number in range(MAX_CORNERS):
+        if corners[number].weight > 0.0:
+            best = best._replace(at=min(best.at, corners[number].deep - slope * corners[number].along))
+    most = 0.0
+    for one in range(MAX_CORNERS):
+        for other in range(MAX_CORNERS):
+            a = corners[one]
+            b = corners[other]
+            if a.weight > 0.0 and b.weight > 0.0 and a.along - b.along > LINE_LENGTH:
+                steep = (a.deep - b.deep) / (a.along - b.along)
+                line = CornerLine(steep, a.deep - steep * a.along)
+                if abs(math.atan(steep) - math.atan(slope)) < MAX_TILT:
+                    score = 0.0
+                    for number in range(MAX_CORNERS):
+                        score += corners[number].weight * max(1.0 - _off_line(corners[number], line) / LINE_DEPTH, 0.0)
+                    if score > most:
+                        most = score
+                        best = line
+    return best
+
+
+def _off_line(corner: RoadCorner, line: CornerLine) -> float:
+    """Return how far [m] a corner is off a row's line."""
+    return abs(corner.deep - line.at - line.slope * corner.along) / math.sqrt(1.0 + line.slope * line.slope)
+
+
+def _is_on_line(corner: RoadCorner, line: CornerLine) -> bool:
+    """Return whether a corner is one of a car in the row, or of a post."""
+    return corner.weight > 0.0 and _off_line(corner, line) < LINE_DEPTH
+
+
+def _is_of_car(corner: RoadCorner, line: CornerLine, first: float) -> bool:
+    """Return whether a corner is of the car, and what stands beside it, whose foremost corner is at ``first``."""
+    return _is_on_line(corner, line) and first - 0.5 * CAR_WIDTH < corner.along <= first
+
+
+def _longest_side(corners: tuple[RoadCorner, ...], line: CornerLine, first: float) -> float:
+    longest = 0.0
+    for number in range(MAX_CORNERS):
+        if _is_of_car(corners[number], line, first):
+            longest = max(longest, corners[number].length)
+    return longest
+
+
+def _side_log_likelihood(corners: tuple[RoadCorner, ...], line: CornerLine, first: float) -> float:
+    """Return the log-likelihood of the lengths of a car's sides."""
+    total = 0.0
+    for number in range(MAX_CORNERS):
+        corner = corners[number]
+        if _is_of_car(corner, line, first) and corner.length > MIN_CAR_SIDE:
+            mean = CAR_LENGTH if corner.is_flank else CAR_WIDTH
+            sigma = CAR_LENGTH_SIGMA if corner.is_flank else CAR_WIDTH_SIGMA
+            if corner.is_complete:
+                total += length_log_likelihood(corner.length, True, mean, sigma)
+            else:
+                total += visible_log_likelihood((corner.length - mean) / sigma)
+    return total
+
+
+def visible_log_likelihood(deviation: float) -> float:
+    """Return the log of the probability that a side is at least as long as is seen of it, so many sigma over the mean.
+
+    Q(z) = exp(-0.717 z - 0.416 z2) / 2 for z >= 0.
+    """
+    z = abs(deviation)
+    tail = 0.5 * math.exp(-0.717 * z - 0.416 * z * z)
+    return max(math.log(tail if deviation > 0.0 else 1.0 - tail), -2.0 * DECIDED)
+
+
+def _car_of(corners: tuple[RoadCorner, ...], line: CornerLine, first: float, lean: float, side: float) -> RowMember:
+    """Return the car whose foremost corner is at ``first``: flank and front from the longest sides of each.
+
+    What stands beside it narrows the gap there. The far end of a front that is not seen in full is a car's width off.
+    """
+    edge = first
+    deep = NO_MEMBER
+    width = CAR_WIDTH
+    width_sigma = CAR_WIDTH_SIGMA
+    sigma = 0.0
+    tilt = 0.0
+    longest = -1.0
+    longest_front = -1.0
+    for number in range(MAX_CORNERS):
+        corner = corners[number]
+        if _is_of_car(corner, line, first):
+            edge = edge if lean > 0.0 else min(edge, corner.along)
+            if corner.length > longest:
+                longest = corner.length
+                tilt = corner.tilt
+                sigma = corner.sigma
+                deep = corner.deep if longest_front < 0.0 else deep
+            if not corner.is_flank and corner.length > max(longest_front, MIN_SIDE):
+                longest_front = corner.length
+                deep = corner.deep
+                if corner.is_complete:
+                    width = corner.length
+                    width_sigma = corner.sigma
+    turned = side * math.tan(tilt) * width
+    if lean > 0.0:
+        return RowMember(edge - width, edge, deep, True, True, deep - turned, deep, width_sigma, sigma)
+    return RowMember(edge, edge + width, deep, True, True, deep, deep + turned, sigma, width_sigma)
+
+
+def _as_post(car: RowMember, lean: float) -> RowMember:
+    """Return what stands at a car's corner where the car's body would be free: a post."""
+    if lean > 0.0:
+        return car._replace(start=car.end - POST_WIDTH, start_front=car.end_front, start_length=POST_WIDTH)
+    return car._replace(end=car.start + POST_WIDTH, end_front=car.start_front, end_length=POST_WIDTH)
+
+
+def _free_body(row: SlotRow, car: RowMember, rays: tuple[Ray, ...]) -> int:
+    """Return how many points of a car's body were observed free."""
+    count = 0
+    for depth in BODY_DEPTHS:
+        for fraction in BODY_FRACTIONS:
+            at = car.start + fraction * (car.end - car.start)
+            point = row_point(row, at, car.front + depth * CAR_LENGTH)
+            if is_free(rays, point.x, point.y):
+                count += 1
+    return count

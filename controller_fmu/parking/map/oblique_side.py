@@ -1,0 +1,271 @@
+"""Sides that run obliquely to a sensor's path: echoes from where the boundary of the cone meets them.
+
+On a side whose normal is turned by more than the half cone against the sensor's axis no foot of a perpendicular is in
+view. The echo comes from the boundary of the cone on that side, so its place is known: p = s + r u, u the boundary. The
+points of one side lie on a line, and the line's direction tells that they came from the boundary: the ranges of feet
+and corners change by less than sin(cone) per metre, and would make lines less oblique than the cone is wide.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    along_of,
+    free_index,
+    offset_of,
+    offset_variance,
+    replace_landmark,
+)
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
+from modelkit.geometry import NO_HIT, Point
+from modelkit.maths import PI, wrap_angle
+
+MIN_POINTS = 5
+"""Of a side, as many as confirm a landmark; a line through fewer is not tested."""
+MIN_LENGTH = 0.25
+"""Of a side [m]."""
+MIN_SPACING = 0.03
+MAX_SPACING = 0.6
+"""Of two points of a side [m]: a step of 0.1 m, on a side nearly along the boundary."""
+LINE_SIGMA = 3.0
+"""A point off the line by more than this many standard deviations is of another side."""
+OBLIQUE_MARGIN = 0.08
+"""A side's normal is turned by more than the half cone and this [rad]: cones open by up to 4 deg more."""
+SQUARE_MARGIN = 0.2
+"""And by less than a right angle less this [rad]: along a side across the path the range tells no direction."""
+CONE_TANGENT = 0.08
+"""How far the boundary may be off, standard deviation of its tangent (26 to 34 deg instead of 30)."""
+EDGE_JUMP = 0.25
+"""Two echoes in a row that differ by more [m] are of two bodies: a boundary point moves by less at each step."""
+MAX_LOST = 3
+"""Cycles without an echo that are dropouts."""
+REACH = 4.5
+"""A side whose outermost echo is farther [m] may go on beyond the range of the sensor."""
+BOUNDARIES = 2
+"""Of a cone: to the left and to the right of its axis."""
+
+
+class SideEnding(IntEnum):
+    """How the ranges go on beyond an end of a side."""
+
+    SMOOTH = 0
+    EDGE = 1
+    """To a farther echo, or to none: the side ends."""
+    HIDDEN = 2
+    """To a nearer echo, of a body that may hide more of the side."""
+
+
+class BoundaryRun(NamedTuple):
+    """Boundary points in a row: how many, sums relative to the first of them, the first and the last."""
+
+    n: int = 0
+    x: float = 0.0
+    y: float = 0.0
+    xx: float = 0.0
+    xy: float = 0.0
+    yy: float = 0.0
+    first: Point = Point(0.0, 0.0)
+    last: Point = Point(0.0, 0.0)
+    range: float = 0.0
+    """Of the last echo [m]; ``NO_HIT`` after none, 0 before the first reading."""
+    begins: int = SideEnding.HIDDEN
+    lost: int = 0
+    """Cycles without an echo since the last."""
+
+
+class ConeBoundaries(NamedTuple):
+    """The runs at the left and the right boundary of a sensor's cone."""
+
+    runs: tuple[BoundaryRun, ...] = (BoundaryRun(),) * BOUNDARIES
+
+
+class ObliqueUpdate(NamedTuple):
+    """Landmarks and the boundaries of a sensor's cone after a reading."""
+
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    boundaries: ConeBoundaries = ConeBoundaries()
+    is_oblique: bool = False
+    """The echo is of such a side: of no foot or corner."""
+
+
+def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: MappingParams) -> ObliqueUpdate:
+    """Return landmarks and runs after a reading of a sensor on a flank; a side is mapped once it has been passed."""
+    for boundary in range(BOUNDARIES):
+        runs = update.boundaries.runs
+        run = runs[boundary]
+        turn = 1.0 if boundary == 0 else -1.0
+        point = boundary_point(reading.sensor, reading.range, turn)
+        over = is_over(run, reading.status, point, reading.range, reading.variance)
+        if over:
+            ends = transition(run.range, reading.range)
+            side = side_of(run, reading.sensor, turn, ends, reading.variance)
+            if side.type != LandmarkType.NONE:
+                update = update._replace(landmarks=put_side(update.landmarks, side, params))
+        run = next_run(run, reading.status, point, reading.range, over)
+        now = side_of(run, reading.sensor, turn, int(SideEnding.HIDDEN), reading.variance)
+        update = update._replace(
+            boundaries=ConeBoundaries(runs[:boundary] + (run,) + runs[boundary + 1 :]),
+            is_oblique=update.is_oblique or now.type != LandmarkType.NONE,
+        )
+    return update
+
+
+def put_side(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingParams) -> tuple[Landmark, ...]:
+    """Return the landmarks with a new side, unless one of them is the same and known better."""
+    other = same_side(landmarks, new, -1, params)
+    if other >= 0 and is_better(landmarks[other], new):
+        return landmarks
+    return replace_landmark(landmarks, other if other >= 0 else free_index(landmarks), new)
+
+
+def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
+    """Return the point of the cone's boundary, to the left (1) or right (-1) of the axis, at a range [m]."""
+    ux = sensor.axis_x * sensor.cone_cos - turn * sensor.axis_y * sensor.cone_sin
+    uy = sensor.axis_y * sensor.cone_cos + turn * sensor.axis_x * sensor.cone_sin
+    return Point(sensor.x + measured * ux, sensor.y + measured * uy)
+
+
+def is_over(run: BoundaryRun, status: int, point: Point, measured: float, variance: float) -> bool:
+    """Return whether a run has ended with a reading whose boundary point is ``point``; ``variance`` [m2] of ranges."""
+    if run.n == 0:
+        return False
+    if status == ReadingStatus.NO_ECHO:
+        return run.lost + 1 >= MAX_LOST
+    if status != ReadingStatus.ECHO or abs(measured - run.range) > EDGE_JUMP:
+        return True
+    dx = point.x - run.last.x
+    dy = point.y - run.last.y
+    if dx * dx + dy * dy > MAX_SPACING * MAX_SPACING:
+        return True
+    if run.n < 3:
+        return False
+    line = line_of(run, variance)
+    off = offset_of(line, point.x, point.y)
+    known = offset_variance(line, along_of(line, point.x, point.y))
+    return off * off > LINE_SIGMA * LINE_SIGMA * (variance + known)
+
+
+def next_run(run: BoundaryRun, status: int, point: Point, measured: float, over: bool) -> BoundaryRun:
+    """Return a run after a reading, or the one that begins after it is ``over``."""
+    if status != ReadingStatus.ECHO:
+        return BoundaryRun(range=NO_HIT) if over or run.n == 0 else run._replace(lost=run.lost + 1)
+    if over or run.n == 0:
+        return with_point(BoundaryRun(begins=transition(measured, run.range)), point, measured)
+    dx = point.x - run.last.x
+    dy = point.y - run.last.y
+    if run.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
+        return run._replace(lost=0)
+    return with_point(run, point, measured)
+
+
+def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
+    """Return a run with one more point, of an echo at ``measured`` [m]."""
+    first = run.first if run.n > 0 else point
+    dx = point.x - first.x
+    dy = point.y - first.y
+    return BoundaryRun(
+        run.n + 1,
+        run.x + dx,
+        run.y + dy,
+        run.xx + dx * dx,
+        run.xy + dx * dy,
+        run.yy + dy * dy,
+        first,
+        point,
+        measured,
+        run.begins,
+    )
+
+
+def transition(inner: float, outer: float) -> int:
+    """Return how a side goes on whose outermost echo is at ``inner`` [m], if the next beyond is at ``outer`` [m]."""
+    if outer > inner + EDGE_JUMP:
+        return SideEnding.EDGE if inner < REACH else SideEnding.HIDDEN
+    return SideEnding.HIDDEN if outer < inner - EDGE_JUMP else SideEnding.SMOOTH
+
+
+def line_of(run: BoundaryRun, variance: float) -> Landmark:
+    """Return the line through a run's points by least squares across it; ``variance`` [m2] of a point."""
+    n = float(max(run.n, 1))
+    x = run.x / n
+    y = run.y / n
+    xx = run.xx - n * x * x
+    xy = run.xy - n * x * y
+    yy = run.yy - n * y * y
+    heading = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    along = 0.5 * (xx + yy + math.sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy))
+    nx = -math.sin(heading)
+    ny = math.cos(heading)
+    across = variance / n
+    return Landmark(
+        type=LandmarkType.SEGMENT,
+        x=run.first.x + x,
+        y=run.first.y + y,
+        heading=heading,
+        xx=across * nx * nx,
+        xy=across * nx * ny,
+        yy=across * ny * ny,
+        hh=variance / max(along, variance),
+        confirmations=run.n,
+    )
+
+
+def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, variance: float) -> Landmark:
+    """Return the side that a run shows, with the sensor to its left; type NONE: no side, or none that is oblique.
+
+    The end towards the foot of the perpendicular is known unless hidden: there the echoes become a corner's. The other
+    end is known where nothing else came nearer.
+    """
+    if run.n < MIN_POINTS:
+        return Landmark()
+    line = line_of(run, variance)
+    if offset_of(line, sensor.x, sensor.y) < 0.0:
+        line = line._replace(heading=wrap_angle(line.heading + PI))
+    foot_x = math.sin(line.heading)
+    foot_y = -math.cos(line.heading)
+    across = turn * (sensor.axis_x * foot_y - sensor.axis_y * foot_x)
+    angle = math.atan2(across, sensor.axis_x * foot_x + sensor.axis_y * foot_y)
+    half = math.atan2(sensor.cone_sin, sensor.cone_cos)
+    first = along_of(line, run.first.x, run.first.y)
+    last = along_of(line, run.last.x, run.last.y)
+    is_oblique = half + OBLIQUE_MARGIN < angle < 0.5 * PI - SQUARE_MARGIN
+    if abs(last - first) < MIN_LENGTH or not is_oblique:
+        return Landmark()
+    foot = along_of(line, sensor.x, sensor.y)
+    first_is_near = (first - last) * (foot - last) > 0.0
+    first_known = run.begins == SideEnding.EDGE or (first_is_near and run.begins == SideEnding.SMOOTH)
+    last_known = ends == SideEnding.EDGE or (not first_is_near and ends == SideEnding.SMOOTH)
+    forward = first < last
+    side = line._replace(
+        start=min(first, last),
+        end=max(first, last),
+        start_known=first_known if forward else last_known,
+        end_known=last_known if forward else first_known,
+    )
+    return _with_opening(side, angle, angle - half, run.range)
+
+
+def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: float) -> Landmark:
+    """Return a side with the covariance of its points and of the cone's opening, at a range [m].
+
+    ``angle`` [rad]: of its normal against the sensor's axis, ``off_boundary``: against the boundary of the cone.
+    """
+    opening = CONE_TANGENT * math.sin(off_boundary)
+    shift = opening * measured
+    nx = -math.sin(side.heading)
+    ny = math.cos(side.heading)
+    end_variance = CONE_TANGENT * CONE_TANGENT * measured * measured
+    return side._replace(
+        xx=side.xx + shift * shift * nx * nx,
+        xy=side.xy + shift * shift * nx * ny,
+        yy=side.yy + shift * shift * ny * ny,
+        hh=side.hh + opening * opening * math.sin(angle) * math.sin(angle),
+        start_variance=end_variance,
+        end_variance=end_variance,
+    )

@@ -14,8 +14,14 @@ ROOT = Path(__file__).parents[2]
 ALLOWED = Path(__file__).with_name("allowed.tsv")
 BASE = "1294e89"
 """Subjects of commits after this one are checked."""
-LANDED = frozenset({"ci: install with uv, build an FMU of the same content once, recipes compile once"})
-"""Subjects of 80 letters that are part of the history."""
+LANDED = frozenset(
+    {
+        "ci: install with uv, build an FMU of the same content once, recipes compile once",
+        "parking: map oblique sides where the cone's boundary meets them, find their rows",
+        "studies: take slot types and shortest slots from the standards, not a system",
+    }
+)
+"""Longer subjects that are part of the history."""
 PASSED, FAILED = 0, 1
 
 

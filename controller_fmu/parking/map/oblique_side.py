@@ -45,9 +45,9 @@ EDGE_JUMP = 0.25
 """Two echoes in a row that differ by more [m] are of two bodies: a boundary point moves by less at each step."""
 MAX_LOST = 3
 """Cycles without an echo that are dropouts."""
-REACH = 4.5
+MAX_EDGE_RANGE = 4.5
 """A side whose outermost echo is farther [m] may go on beyond the range of the sensor."""
-BOUNDARIES = 2
+CONE_BOUNDARIES = 2
 """Of a cone: to the left and to the right of its axis."""
 
 
@@ -82,7 +82,7 @@ class BoundaryRun(NamedTuple):
 class ConeBoundaries(NamedTuple):
     """The runs at the left and the right boundary of a sensor's cone."""
 
-    runs: tuple[BoundaryRun, ...] = (BoundaryRun(),) * BOUNDARIES
+    runs: tuple[BoundaryRun, ...] = (BoundaryRun(),) * CONE_BOUNDARIES
 
 
 class ObliqueUpdate(NamedTuple):
@@ -96,7 +96,7 @@ class ObliqueUpdate(NamedTuple):
 
 def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: MappingParams) -> ObliqueUpdate:
     """Return landmarks and runs after a reading of a sensor on a flank; a side is mapped once it has been passed."""
-    for boundary in range(BOUNDARIES):
+    for boundary in range(CONE_BOUNDARIES):
         runs = update.boundaries.runs
         run = runs[boundary]
         turn = 1.0 if boundary == 0 else -1.0
@@ -186,7 +186,7 @@ def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
 def transition(inner: float, outer: float) -> int:
     """Return how a side goes on whose outermost echo is at ``inner`` [m], if the next beyond is at ``outer`` [m]."""
     if outer > inner + EDGE_JUMP:
-        return SideEnding.EDGE if inner < REACH else SideEnding.HIDDEN
+        return SideEnding.EDGE if inner < MAX_EDGE_RANGE else SideEnding.HIDDEN
     return SideEnding.HIDDEN if outer < inner - EDGE_JUMP else SideEnding.SMOOTH
 
 

@@ -32,13 +32,7 @@ from orchestrator.presentation.log.mcap_file import HEADER_SIZE, McapFile
 from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import with_checksum
 from orchestrator.presentation.log.schema import PARAMETERS
-from orchestrator.presentation.log.signal_channels import (
-    RowChanges,
-    add_channel,
-    message_name,
-    rows_per_chunk,
-    signal_channels,
-)
+from orchestrator.presentation.log.signal_channels import RowChanges, SignalChannels, add_channel, message_name
 from orchestrator.presentation.log.sink import Sink
 from orchestrator.simulation.cosim.algorithm import Termination
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
@@ -63,20 +57,15 @@ class McapLog:
         self._file.metadata("apa", with_checksum(info))
         self.lines: list[Line] = []
         """Of ``/log``."""
-        places = places_of(instances)
-        self._channels = [
-            channel
-            for number, instance in enumerate(instances)
-            for channel in signal_channels(self._file, instance, places[2 * number : 2 * number + 2])
-        ]
+        is_file = isinstance(to, Path)  # each of its chunks can be read without the one before
+        self._signals = SignalChannels(self._file, instances, is_repeated=is_file)
         self._log = self._file.add_channel("/log", Log)
         for instance in instances:
             self._write_parameters(instance)
         self._pictures: list[_Pictures] = []
         if _frame_columns(instances):
             self._pictures.append(_Pictures(self._file, instances, scenario))
-        self._is_file = isinstance(to, Path)
-        self.rows_per_chunk = rows = rows_per_chunk(self._channels) if self._is_file else 1
+        self.rows_per_chunk = rows = self._signals.rows_per_chunk() if is_file else 1
         self._values = all_values(instances)
         self._rows = np.empty((rows, len(self._values)))
         self._times = np.empty(rows, dtype=np.int64)
@@ -137,8 +126,7 @@ class McapLog:
         changes = RowChanges(rows, self._latest)
         for pictures in self._pictures:
             pictures.write(t_ns, rows, changes)
-        for channel in self._channels:  # each chunk of a file can be read without the one before
-            channel.write(t_ns, rows, changes, from_first=self._is_file)
+        self._signals.write(t_ns, rows, changes)
         self._latest = rows[-1].copy()
         self._file.flush()
 
@@ -156,6 +144,8 @@ class _Pictures:
     def __init__(self, file: Sink, instances: Sequence[FmuInstance], scenario: Scenario) -> None:
         self._file = file
         self._drawn = _frame_columns(instances)
+        self._known = [place for place, column in enumerate(self._drawn) if column is not None]
+        self._known_columns = [column for column in self._drawn if column is not None]
         named = {instance.name: instance for instance in instances}
         self._controller = named.get("controller")
         outputs = dict(zip(named, places_of(instances)[1::2], strict=True))
@@ -174,6 +164,7 @@ class _Pictures:
         self._path_columns = self._controller_outputs.start + self._path_places
         road = self._controller.outputs.index.get(ON_ROAD) if self._controller else None
         self._road_columns = np.array([] if road is None else [self._controller_outputs.start + road], dtype=np.intp)
+        self._path_and_road = np.append(self._path_columns, self._road_columns)
         self._path_values: Array | None = None
         """Outputs that the path is made of which is drawn."""
         self._path_is_drawn = False
@@ -182,17 +173,15 @@ class _Pictures:
 
     def write(self, t_ns: Times, rows: Array, changes: RowChanges) -> None:
         """Draw what is due at these exchanges."""
-        path_changes = changes.rows_of(np.append(self._path_columns, self._road_columns))
+        path_changes = changes.rows_of(self._path_and_road)
         self._path_is_drawn &= not len(path_changes)
         periods = t_ns // SCENE_PERIOD_NS
         due = np.flatnonzero(periods > np.append(self._last_period, periods[:-1]))
         self._last_period = int(periods[-1])
         if not len(due):
             return
-        times, values = t_ns[due], rows.take(due, axis=0)
-        drawn = np.zeros((len(due), len(self._drawn)))
-        known = [place for place, column in enumerate(self._drawn) if column is not None]
-        drawn[:, known] = values[:, [column for column in self._drawn if column is not None]]
+        times, drawn = t_ns[due], np.zeros((len(due), len(self._drawn)))
+        drawn[:, self._known] = rows[due[:, None], self._known_columns]
         self._file.write_rows(self._transforms, times, self._frames.rows(times, drawn))
         while self._changes and times[-1] >= self._changes[0]:
             self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
@@ -202,7 +191,7 @@ class _Pictures:
             if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
                 self._draw_trail(time)
         if not self._path_is_drawn:
-            self._draw_paths(times, values)
+            self._draw_paths(times, rows.take(due, axis=0))
             self._path_is_drawn = not len(path_changes) or bool(path_changes[-1] <= due[-1])
 
     def _draw_stage(self, t_ns: int) -> None:

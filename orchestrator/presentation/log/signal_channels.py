@@ -12,7 +12,8 @@ from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import VARIABLES
 from orchestrator.presentation.log.schema import PACKAGE, channel_places, descriptor_set, file_descriptor, name_prefix
 from orchestrator.presentation.log.sink import Sink
-from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance
+from orchestrator.simulation.cosim.compiled_master import EXCHANGES_PER_CALL
+from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, places_of
 from orchestrator.simulation.cosim.recording import to_json
 from orchestrator.simulation.cosim.signal_blocks import Times
 
@@ -27,13 +28,18 @@ class RowChanges:
         bits = rows.view(np.int64)
         self._first = np.ones(bits.shape[1], dtype=bool) if before is None else bits[0] != before.view(np.int64)
         self._later = bits[1:] != bits[:-1]
-        self._columns = self._first | self._later.any(axis=0)
+        self._changing = self._first | self._later.any(axis=0)
+
+    @property
+    def columns(self) -> NDArray[np.intp]:
+        """Return those in which a value differs."""
+        return np.flatnonzero(self._changing)
 
     def rows_of(self, columns: NDArray[np.intp]) -> NDArray[np.intp]:
         """Return the rows in which one of some columns differs."""
-        if not self._columns.take(columns).any():
-            return np.empty(0, dtype=np.intp)
-        changing = columns[self._columns[columns]]
+        changing = columns[self._changing[columns]]
+        if not len(changing):
+            return changing
         later = np.flatnonzero(self._later[:, changing].any(axis=1)) + 1
         return np.append(0, later) if self._first[changing].any() else later
 
@@ -47,35 +53,68 @@ class SignalChannel:
     def __init__(self, file: Sink, instance: str, place: str, signals: Sequence[tuple[Variable, str, int]]) -> None:
         prefix = name_prefix(place)
         variables = [item._replace(name=item.name.removeprefix(prefix)) for item, _, _ in signals]
-        self._columns = np.array([column for _, _, column in signals], dtype=np.intp)
+        self.columns = np.array([column for _, _, column in signals], dtype=np.intp)
         topic = f"/{instance}/{place}" if place else f"/{instance}"
         notes = [note for _, note, _ in signals]
         self._channel = add_channel(file, topic, message_name(instance, place), variables, notes)
-        self._encoder = Encoder(variables, self._columns.tolist(), HEADER_SIZE)
+        self._encoder = Encoder(variables, self.columns.tolist(), HEADER_SIZE)
         self._file = file
         self.is_on_change = bool(place)
         self._latest = b""
         """Its latest message, if it is written on change."""
         self.size = HEADER_SIZE + self._encoder.size
 
-    def write(self, times: Times, rows: Array, changes: RowChanges, *, from_first: bool) -> None:
-        """Hand a message for each of ``times`` to the file, or for each at which a value changes.
-
-        ``from_first``: also for the first, changed or not.
-        """
-        if not self.is_on_change:
-            self._file.write_rows(self._channel, times, self._encoder.rows(rows))
-            return
-        chosen = changes.rows_of(self._columns)
-        if from_first and not len(chosen):
-            self._file.write(self._channel, int(times[0]), self._latest)
-        if not len(chosen):
-            return
-        if from_first and chosen[0]:
-            chosen = np.append(0, chosen)
-        messages = self._encoder.rows(rows[chosen])
+    def write(self, times: Times, rows: Array) -> None:
+        """Hand a message for each of ``times`` to the file."""
+        messages = self._encoder.rows(rows)
         self._latest = messages[-1, HEADER_SIZE:].tobytes()
-        self._file.write_rows(self._channel, times[chosen], messages)
+        self._file.write_rows(self._channel, times, messages)
+
+    def repeat(self, t_ns: int) -> None:
+        """Hand the latest message to the file once more."""
+        self._file.write(self._channel, t_ns, self._latest)
+
+
+class SignalChannels:
+    """All channels of signals of a log.
+
+    ``is_repeated``: what is written on change is also written at the first of the rows that are handed over.
+    """
+
+    def __init__(self, file: Sink, instances: Sequence[FmuInstance], *, is_repeated: bool) -> None:
+        parts = places_of(instances)
+        self._channels = [
+            channel
+            for number, instance in enumerate(instances)
+            for channel in signal_channels(file, instance, parts[2 * number : 2 * number + 2])
+        ]
+        self._is_repeated = is_repeated
+        self._channel_of_column = np.zeros(parts[-1].stop if parts else 0, dtype=np.intp)
+        for number, channel in enumerate(self._channels):
+            self._channel_of_column[channel.columns] = number
+
+    def write(self, times: Times, rows: Array, changes: RowChanges) -> None:
+        """Hand the messages of rows to the file."""
+        touched = set(self._channel_of_column[changes.columns].tolist())
+        for number, channel in enumerate(self._channels):
+            if not channel.is_on_change:
+                channel.write(times, rows)
+            elif number in touched:
+                chosen = changes.rows_of(channel.columns)
+                if self._is_repeated and chosen[0]:
+                    chosen = np.append(0, chosen)
+                channel.write(times[chosen], rows[chosen])
+            elif self._is_repeated:
+                channel.repeat(int(times[0]))
+
+    def rows_per_chunk(self) -> int:
+        """Return how many rows go into a chunk: few enough for one in which every value changes in each row.
+
+        They are whole blocks of the compiled master if they can be: what comes in one needs no copy.
+        """
+        expected = sum(channel.size for channel in self._channels if not channel.is_on_change)
+        count = min(ROWS_SIZE // expected, MAX_ROWS_SIZE // sum(channel.size for channel in self._channels))
+        return count // EXCHANGES_PER_CALL * EXCHANGES_PER_CALL or max(1, count)
 
 
 def signal_channels(file: Sink, instance: FmuInstance, columns: Sequence[slice]) -> list[SignalChannel]:
@@ -93,12 +132,6 @@ def signal_channels(file: Sink, instance: FmuInstance, columns: Sequence[slice])
         SignalChannel(file, instance.name, name, [signals[place] for place in places])
         for name, places in channel_places([item.name for item in variables]).items()
     ]
-
-
-def rows_per_chunk(channels: Sequence[SignalChannel]) -> int:
-    """Return how many rows go into a chunk: few enough for one in which every value changes in each row."""
-    expected = sum(channel.size for channel in channels if not channel.is_on_change)
-    return max(1, min(ROWS_SIZE // expected, MAX_ROWS_SIZE // sum(channel.size for channel in channels)))
 
 
 def message_name(instance: str, place: str) -> str:

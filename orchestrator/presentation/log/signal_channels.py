@@ -37,7 +37,7 @@ class RowChanges:
 
     def rows_of(self, columns: NDArray[np.intp]) -> NDArray[np.intp]:
         """Return the rows in which one of some columns differs."""
-        changing = columns[self._changing[columns]]
+        changing: NDArray[np.intp] = columns[self._changing[columns]]
         if not len(changing):
             return changing
         later = np.flatnonzero(self._later[:, changing].any(axis=1)) + 1

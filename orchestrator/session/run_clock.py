@@ -7,8 +7,8 @@ from orchestrator.simulation.cosim.algorithm import Termination
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.signal_blocks import Times
 
-PERIOD = 0.2
-"""Real time between two calls [s]: simulated time says nothing of how long somebody has waited."""
+SHOW_PERIOD = 0.2
+"""Real time between two calls [s]: simulated time says nothing of how long a user has waited."""
 
 
 class RunClock:
@@ -22,7 +22,7 @@ class RunClock:
         """Show the time now and then."""
         now = time.monotonic()
         if now >= self._next:
-            self._next = now + PERIOD
+            self._next = now + SHOW_PERIOD
             self._show(t_ns / 1e9)
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:

@@ -257,7 +257,7 @@ def test_a_long_run_says_how_far_it_is_however_small_its_steps(
 ) -> None:
     monkeypatch.setattr("orchestrator.inputs.text.console.PERIOD", 0.0)
     monkeypatch.setattr("orchestrator.inputs.text.console.LONGEST", 0.0)
-    monkeypatch.setattr("orchestrator.session.run_clock.PERIOD", 0.0)
+    monkeypatch.setattr("orchestrator.session.run_clock.SHOW_PERIOD", 0.0)
     file = tmp_path / "standing.yaml"
     expectations = "[{id: a, signal: speed, always: {max: 1}}]"
     file.write_text(f"model: vehicle\nstep: 0.01 ms\nstop_time: 2 ms\nexpect: {expectations}\n")

@@ -273,20 +273,16 @@ def _trace_pieces(
     """
     if not all(map(math.isfinite, (*start, direction, *(item for piece in pieces for item in piece)))):
         return np.empty((0, 2))
+    counts = [math.ceil(min(max(1.0, length / spacing), MOST_POINTS)) if length > 0.0 else 0 for length, _, _ in pieces]
+    if not sum(counts):
+        return np.empty((0, 2))
     x, y, heading = start
-    points = [(x, y)]
-    for length, k0, k1 in pieces:
-        count = math.ceil(min(max(1.0, length / spacing), MOST_POINTS)) if length > 0.0 else 0
-        for number in range(count):
-            ds = length / count
-            if not math.isfinite(x + y + heading):
-                return np.empty((0, 2))
-            turn = (k0 + (k1 - k0) * (number + 0.5) / count) * ds
-            if not math.isfinite(turn):
-                return np.empty((0, 2))
-            chord = ds * (math.sin(0.5 * turn) / (0.5 * turn) if turn != 0.0 else 1.0)
-            x += direction * chord * math.cos(heading + 0.5 * turn)
-            y += direction * chord * math.sin(heading + 0.5 * turn)
-            heading += turn
-            points.append((x, y))
-    return np.array(points) if len(points) > 1 and np.isfinite(points).all() else np.empty((0, 2))
+    length, k0, k1, count = np.repeat(np.column_stack([np.array(pieces), counts]), counts, axis=0).T
+    number = np.concatenate([np.arange(item) for item in counts])
+    with np.errstate(over="ignore", invalid="ignore"):
+        ds = length / count
+        turns = (k0 + (k1 - k0) * (number + 0.5) / count) * ds
+        along = np.cumsum(np.append(heading, turns))[:-1] + 0.5 * turns
+        chords = direction * ds * np.sinc(0.5 * turns / math.pi)
+        points = np.cumsum([[x, y], *np.column_stack([chords * np.cos(along), chords * np.sin(along)])], axis=0)
+    return points if np.isfinite(points).all() else np.empty((0, 2))

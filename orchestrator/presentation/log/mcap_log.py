@@ -3,8 +3,8 @@
 Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen, at each exchange); of their
 large structures ``/controller/guo2015`` and so on (on change, and at the first exchange of a chunk);
 ``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
-(Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
-the file depends on real time, so the same run gives the same bytes.
+(Foxglove types, at 20 Hz; a path on change, at 5 Hz at most) and ``/log``. Times are simulated time from zero;
+nothing in the file depends on real time, so the same run gives the same bytes.
 """
 
 from collections.abc import Sequence
@@ -39,6 +39,7 @@ from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, Ports
 from orchestrator.simulation.cosim.signal_blocks import Times
 
 SCENE_PERIOD_NS = 50_000_000
+PATH_PERIOD_NS = 200_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
 TRAIL_STEP_NS = 200_000_000
 TRAIL_POSES = 100
@@ -164,6 +165,8 @@ class _Pictures:
         self._path_columns = self._controller_outputs.start + self._path_places
         road = self._controller.outputs.index.get(ON_ROAD) if self._controller else None
         self._road_columns = np.array([] if road is None else [self._controller_outputs.start + road], dtype=np.intp)
+        names = self._controller.outputs.names if self._controller else []
+        self._path_names = [*(names[place] for place in self._path_places), *([] if road is None else [ON_ROAD])]
         self._path_and_road = np.append(self._path_columns, self._road_columns)
         self._path_values: Array | None = None
         """Outputs that the path is made of which is drawn."""
@@ -190,9 +193,10 @@ class _Pictures:
             self._add_to_trail(scene.trail_pose((x, y, heading)))
             if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
                 self._draw_trail(time)
-        if not self._path_is_drawn:
-            self._draw_paths(times, rows.take(due, axis=0))
-            self._path_is_drawn = not len(path_changes) or bool(path_changes[-1] <= due[-1])
+        shown = due[times % PATH_PERIOD_NS < SCENE_PERIOD_NS]
+        if not self._path_is_drawn and len(shown):
+            self._draw_paths(t_ns[shown], rows.take(shown, axis=0))
+            self._path_is_drawn = not len(path_changes) or bool(path_changes[-1] <= shown[-1])
 
     def _draw_stage(self, t_ns: int) -> None:
         self._changes = [change for change in self._changes if change > t_ns]
@@ -220,14 +224,14 @@ class _Pictures:
         """Draw the planned path wherever it changes."""
         if self._controller is None:
             return
-        ports = self._controller.outputs
         on_road = rows[:, self._road_columns] > 0.0
         values = np.hstack([rows.take(self._path_columns, axis=1), on_road])
         changes = find_changes(values, self._path_values)
         self._path_values = values[-1]
         for row in changes.tolist():
-            named = dict(zip(ports.names, rows[row, self._controller_outputs].tolist(), strict=True))
-            points = sample_path(named, parameters=_values_by_name(self._controller.parameters))
+            named = dict(zip(self._path_names, values[row].tolist(), strict=True))
+            parameters = _values_by_name(self._controller.parameters) if on_road[row].any() else None
+            points = sample_path(named, parameters=parameters)
             update = scene.path_update(int(t_ns[row]), points)
             self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
 

@@ -7,9 +7,8 @@ from controller_fmu.registry import APART, MODEL, SYSTEM_MODELS, SYSTEMS, System
 if TYPE_CHECKING:
     from controller_fmu.parking.standalone import MODEL as PARKING
     from controller_fmu.policy.standalone import MODEL as POLICY
-    from controller_fmu.valet.standalone import MODEL as VALET
 
-__all__ = ["APART", "MODEL", "PARKING", "POLICY", "SYSTEMS", "SYSTEM_MODELS", "VALET", "System"]
+__all__ = ["APART", "MODEL", "PARKING", "POLICY", "SYSTEMS", "SYSTEM_MODELS", "System"]
 
 globals().update({choice.name: model for choice, model in SYSTEM_MODELS.items()})
 # A Python FMU of one system finds its model under this name.

@@ -21,7 +21,6 @@ from controller_fmu.common.clock import Clock, begin, refusal_output, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.parking.params import ParkingSystem
 from controller_fmu.policy.params import PolicySystem
-from controller_fmu.valet.params import ValetSystem
 from modelkit.composition import make_named_tuple, merge_records
 from modelkit.model import Model, SampledSystem, SampledSystems, Variant
 from modelkit.signal import Signal
@@ -56,20 +55,14 @@ class StandaloneModels(Mapping[IntEnum, Model]):
         return len(self._rows)
 
 
-def _valet() -> Model:
-    from controller_fmu.valet.standalone import MODEL
-
-    return MODEL
-
-
-def _valet_large() -> Model:
-    from controller_fmu.valet.large_map import MODEL
-
-    return MODEL
-
-
 def _parking() -> Model:
     from controller_fmu.parking.standalone import MODEL
+
+    return MODEL
+
+
+def _parking_large() -> Model:
+    from controller_fmu.parking.large_map import MODEL
 
     return MODEL
 
@@ -82,10 +75,9 @@ def _policy() -> Model:
 
 APART = StandaloneModels(
     {
-        ValetSystem.VALET: _valet,
         ParkingSystem.PARKING: _parking,
         PolicySystem.POLICY: _policy,
-        ValetSystem.VALET_LARGE: _valet_large,
+        ParkingSystem.PARKING_LARGE: _parking_large,
     }
 )
 """Those that are a controller of their own, with work arrays or a map: by their value of ``controller.system``."""

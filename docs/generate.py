@@ -192,10 +192,11 @@ def chart_modules() -> list[ModuleType]:
 def enums_of(module: ModuleType) -> tuple[type[IntEnum], type[IntEnum]]:
     """Return (states, guards) of a chart: the states are the enum that has all targets as members."""
     targets = {row[2] for row in module.TRANSITIONS}
+    guards: type[IntEnum] = vars(module).get("Guard") or module.Condition
     for value in vars(module).values():
-        if isinstance(value, type) and issubclass(value, IntEnum) and value not in (IntEnum, module.Guard):
+        if isinstance(value, type) and issubclass(value, IntEnum) and value not in (IntEnum, guards):
             if targets <= {int(member) for member in value}:
-                return value, module.Guard
+                return value, guards
     raise LookupError(f"{module.__name__}: no enum has all states of its chart")
 
 

@@ -15,12 +15,8 @@ NO_MODEL_CODE = (
     *("modelkit/model.py", "modelkit/variables.py", "modelkit/connections.py", "modelkit/terminals.py"),
     *("modelkit/store.py", "modelkit/assembly.py", "modelkit/states.py"),
     *("modelkit/composition.py", "controller_fmu/registry.py"),
-    *(
-        "controller_fmu/valet/standalone.py",
-        "controller_fmu/valet/large_map.py",
-        "controller_fmu/parking/standalone.py",
-        "controller_fmu/policy/standalone.py",
-    ),
+    *("controller_fmu/parking/standalone.py", "controller_fmu/parking/large_map.py"),
+    "controller_fmu/policy/standalone.py",
 )
 STANDARD = {"math", "typing", "enum"}
 KIT = {

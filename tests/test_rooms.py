@@ -230,16 +230,10 @@ ONE_MEANING = {
     "StopCondition": "what ends a run before its stop time: in Python, in the batch in C",
     "Guard": "the conditions of a chart, one bit each",
     "Kerb": "a straight kerb: of the scene, of the judge",
-    "Move": "what is driven up to the next change of direction",
-    "Path": "what a planner gives",
     "Piece": "a line, an arc or a clothoid of a path",
     "Plan": "what a planner gives, with what it was made for",
     "Reference": "the point of the path that the car should be at",
-    "Sight": "what is in the way",
     "Slot": "a slot: as it is, as it was found",
-    "Step": "the states of a chart of one manoeuvre",
-    "Tracked": "where the car is along what it drives",
-    "Watch": "the clocks of a monitor",
 }
 """Classes of one name in several rooms that do not import each other, and what the name means in all of them."""
 
@@ -256,7 +250,7 @@ def test_a_class_name_has_one_meaning() -> None:
     assert [name for name, found in twice.items() if all(module.startswith("orchestrator.") for module in found)] == []
 
 
-SHARED_BY_SYSTEMS = ("common", "planning", "sensing")
+SHARED_BY_SYSTEMS = ("common",)
 SYSTEMS = sorted(
     file.parent.name
     for file in (ROOT / "controller_fmu").glob("*/__init__.py")

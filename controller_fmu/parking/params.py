@@ -53,6 +53,8 @@ class ParkingSystem(IntEnum):
 
     PARKING = 8
     """Slots in a map of landmarks, a path into one, a collision monitor; a controller of its own."""
+    PARKING_LARGE = 10
+    """The same with a map of 2,048 vertices, of 360 otherwise; a controller of its own."""
 
 
 class ParkingParams(NamedTuple):

@@ -24,7 +24,7 @@ Open the file in a browser; it needs no network. `apa run` writes one beside the
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument(
-        "scenario", nargs="*", metavar="SCENARIO", help="names, files, patterns (default: all except valet scenarios)"
+        "scenario", nargs="*", metavar="SCENARIO", help="names, files, patterns (default: all of the common controller)"
     )
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenario")
     parser.add_argument("--out", type=Path, default=Path(NAME), metavar="FILE", help=f"the page (default: {NAME})")

@@ -1,4 +1,4 @@
-"""``apa bench parking --system parking``: scenes of the valet driven by another system."""
+"""``apa bench parking --system parking``: scenes driven by another system than their own."""
 
 import json
 from pathlib import Path
@@ -36,7 +36,7 @@ def test_a_map_that_is_too_large_is_refused_with_what_it_holds(tmp_path: Path) -
     corners = [[[40.0 + number, 40.0], [40.5 + number, 40.0], [40.25 + number, 40.5]] for number in range(125)]
     content = read_parkbench(write(tmp_path / "scene.json", scene())) | {"name": "many"}
     content["obstacles"] = [*content["obstacles"], *corners]
-    content["controller"]["system"] = "valet_large"
+    content["controller"]["system"] = "parking_large"
     file = tmp_path / "many.yaml"
     file.write_text(yaml.safe_dump(content))
     with pytest.raises(BadInput, match="holds 360 corners"):

@@ -199,6 +199,6 @@ def test_a_solution_that_passes_through_a_wall_is_invalid(
 @NATIVE
 def test_what_has_no_optimum_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "optimal", "guo2015-case4", "--out", str(tmp_path)]) == 2
-    assert "expected a drive of the valet" in capsys.readouterr().err
+    assert "expected a drive of the parking system" in capsys.readouterr().err
     assert main(["bench", "parking", "--optimal", "--body", "double_track", "--out", str(tmp_path)]) == 2
     assert "add --body kinematic" in capsys.readouterr().err

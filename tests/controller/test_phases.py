@@ -5,21 +5,18 @@ from typing import Any
 
 import pytest
 
-from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS, VALET
+from controller_fmu import MODEL, PARKING, SYSTEM_MODELS, SYSTEMS
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.common.phases import CommonPhase, is_over, is_parking
+from controller_fmu.parking.chart import ParkingPhase
 from controller_fmu.registry import Phase, System
-from controller_fmu.valet.signals import ValetOutput
 from fmus.contents.description3 import model_description3
 from fmus.contents.variables import describe, fmi_variables
 from modelkit.model import Model
 from modelkit.states import parts_of
-from modelkit.variables import variables
 
 OF_SYSTEMS = {item.field: dict(item.states)["phase"] for item in SYSTEMS.systems}
-OF_VALET = next(item for item in variables(ValetOutput) if item.name == "phase").signal.states
-assert OF_VALET is not None
-ALL = {**OF_SYSTEMS, "valet": OF_VALET}
+ALL = dict(OF_SYSTEMS)
 
 
 @pytest.mark.parametrize("system", ALL)
@@ -59,9 +56,9 @@ def test_one_system_does_not_name_anothers_phases() -> None:
         ": 0 STANDBY, 1 PRE_STEER, 2 PATH_TRACKING, 8 STRAIGHTEN, 9 PARKED, 10 FAILED, 11 TAKEOVER"
     )
     assert "TO_Q1" in describe(next(item for item in fmi_variables(MODEL) if item.name == "phase"))
-    assert [phase_of(model) for model in (MODEL, SYSTEM_MODELS[System.APA], SYSTEM_MODELS[System.ADAPTIVE], VALET)] == [
-        *(Phase, OF_SYSTEMS["apa"], AdaptivePhase, OF_VALET)
-    ]
+    assert [
+        phase_of(model) for model in (MODEL, SYSTEM_MODELS[System.APA], SYSTEM_MODELS[System.ADAPTIVE], PARKING)
+    ] == [*(Phase, OF_SYSTEMS["apa"], AdaptivePhase, ParkingPhase)]
 
 
 def phase_of(model: Model[Any, Any, Any, Any]) -> type[IntEnum] | None:

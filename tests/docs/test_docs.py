@@ -205,7 +205,7 @@ def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path: Path, mo
     marks = {
         mark[0]: mark.groups() for page in PAGES for mark in frames.MARK.finditer(page.read_text(encoding="utf-8"))
     }
-    assert len(marks) == len(READMES) + 2, "each system of a paper, apa and valet"
+    assert len(marks) == len(READMES) + 2, "each system of a paper, apa and parking"
     for text, (system, scenario, names) in marks.items():
         made = tmp_path / (f"live-{system}.html" if system else "live.html")
         models = load_scenario(scenario).models

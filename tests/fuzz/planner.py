@@ -4,7 +4,7 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
-from controller_fmu.planning.plan import PLANNED
+from controller_fmu.parking.planning.planner import PlanningStatus
 from fmus.compiler import translate
 from tests.compiler.c_model import CModel
 from tests.planning import plan_model
@@ -19,7 +19,7 @@ def fuzz(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[st
         scene = draw_scene(seed)
         plan = planned_by(planner, scene)
         yield ["planner", str(seed)], _told(scene, mistake_of(scene, plan))
-        if plan.status == PLANNED:
+        if plan.status == PlanningStatus.PLANNED:
             again = replanned(scene, plan, seed)
             yield ["planner", str(seed), "replanning"], _told(again, mistake_of(again, planned_by(planner, again)))
 

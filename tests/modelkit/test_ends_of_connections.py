@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu import SYSTEM_MODELS, VALET
+from controller_fmu import PARKING, SYSTEM_MODELS
 from fmus.contents.arrays import visible_arrays
 from fmus.contents.variables import limits, visible_variables
 from modelkit.connections import connections, part_of
@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import variables
 from vehicle_fmu import MODEL as VEHICLE
 
-CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, VALET, *SYSTEM_MODELS.values())
+CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, PARKING, *SYSTEM_MODELS.values())
 
 
 def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:

@@ -26,7 +26,7 @@ from orchestrator.studies.parking.parking_world.outcome import (
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
 from orchestrator.studies.parking.parking_world.study import study
-from orchestrator.studies.parking.studied_systems import VALET_SYSTEM
+from orchestrator.studies.parking.studied_systems import APA_SYSTEM
 from orchestrator.studies.sweep.study.space import Space
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
@@ -39,7 +39,7 @@ def drawn(count: int = 200) -> dict[str, np.ndarray]:
 
 
 def test_rows_do_not_depend_on_the_system() -> None:
-    one, other = study(20, 3), study(20, 3, VALET_SYSTEM)
+    one, other = study(20, 3), study(20, 3, APA_SYSTEM)
     assert np.array_equal(one.design.values, other.design.values, equal_nan=True)
     assert one.scenario.controller["system"] != other.scenario.controller["system"]
 

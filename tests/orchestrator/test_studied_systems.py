@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controller_fmu.parking.params import ParkingParams
 from modelkit.variables import variables
 from orchestrator.cli import main
 from orchestrator.commands.sweep import select_study
@@ -14,18 +13,31 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.simulation.cosim.fmu_files import can_compile
 from orchestrator.studies.parking import detected_slot_study, pull_out_study, search_kpis, slot_rows, study
 from orchestrator.studies.parking.cases import cases as grid_cases
-from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM, system_requirements, with_system
+from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM, system_requirements
 from orchestrator.studies.sweep.in_memory import columns_in_memory
 from orchestrator.studies.sweep.study.imported_fmu import signals_of
+from orchestrator.studies.sweep.study.study import Study
 
 MADE: dict[str, Callable[..., Any]] = {
     "apa-grid": lambda **own: study.study_of(grid_cases()[:3], **own),
     "apa-out": lambda **own: pull_out_study.study(3, **own),
     "search-kpis": lambda **own: search_kpis.study_of(search_kpis.cases()[:3], **own),
+}
+"""Study written for another system -> some of its runs."""
+OWN: dict[str, Callable[..., Any]] = {
     "valet-rows": slot_rows.study,
     "valet-slots": lambda **own: detected_slot_study.study(3, ways=True, **own),
 }
-"""Study -> some of its runs."""
+"""Study written for this system -> some of its runs."""
+
+
+def check(made: Study) -> None:
+    known = signals_of(made.scenario)
+    wanted = [measure.signal for measure in made.measures.values()]
+    wanted += [item.signal for items in made.within.values() for item in items if "." in item.signal]
+    assert [signal for signal in wanted if signal.startswith("controller.") and signal not in known] == []
+    params = {item.name for item in variables(made.scenario.models["controller"].params)}
+    assert {name for name in made.scenario.controller if name not in params} == set()
 
 
 @pytest.mark.parametrize("name", sorted(MADE))
@@ -33,14 +45,8 @@ def test_the_rows_are_the_same_and_all_that_is_kept_exists(name: str) -> None:
     own, other = MADE[name](), MADE[name](system=PARKING_SYSTEM)
     assert other.name == f"{name}-{PARKING_SYSTEM}"
     assert other.scenario.controller["system"] == PARKING_SYSTEM
-    known = signals_of(other.scenario)
-    wanted = [measure.signal for measure in other.measures.values()]
-    wanted += [item.signal for items in other.within.values() for item in items if "." in item.signal]
-    assert [signal for signal in wanted if signal.startswith("controller.") and signal not in known] == []
-    for made in (own, other):
-        assert made.scenario.controller.keys() <= {
-            item.name for item in variables(made.scenario.models["controller"].params)
-        }
+    check(own)
+    check(other)
     vehicle = [
         {field.key: column for field, column in zip(made.design.fields, made.design.values.T, strict=True)}
         for made in (own, other)
@@ -53,22 +59,16 @@ def test_the_rows_are_the_same_and_all_that_is_kept_exists(name: str) -> None:
             np.testing.assert_array_equal(column, vehicle[1][key])
 
 
-@pytest.mark.parametrize("name", sorted(MADE))
+@pytest.mark.parametrize("name", sorted(OWN))
+def test_a_study_keeps_what_exists_and_sets_what_its_system_has(name: str) -> None:
+    check(OWN[name]())
+
+
+@pytest.mark.parametrize("name", sorted({**MADE, **OWN}))
 def test_a_system_that_cannot_drive_a_study_is_refused(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", name, "--set", "system=1"]) == 2
     assert f"1 cannot drive {name}: expected" in capsys.readouterr().err
-    assert select_study(name, ["system=8"]).name == f"{name}-8"
-
-
-def test_the_slot_of_the_valet_becomes_the_target() -> None:
-    case = slot_rows.cases()[40]
-    scenario = with_system(slot_rows.scenario_of(case), PARKING_SYSTEM)
-    assert scenario.target is not None
-    assert scenario.controller["target.heading"] == scenario.target.heading
-    assert scenario.controller["search.active"] is False
-    assert scenario.controller["map[24].polygon"] == 6
-    assert not any(name.startswith("slot.kind") for name in scenario.controller)
-    assert {item.name for item in variables(ParkingParams)} >= scenario.controller.keys()
+    assert select_study(name, ["system=8"]).name == (name if name in OWN else f"{name}-8")
 
 
 def test_requirements_of_the_assist_are_measured_where_the_system_reports_them() -> None:

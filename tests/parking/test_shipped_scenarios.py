@@ -1,4 +1,4 @@
-"""The shipped scenarios of `apa` and `valet`, driven by this system: which of them end as they are meant to.
+"""The shipped scenarios of `apa` and with known goals, driven by this system: which of them end as they are meant to.
 
 ``python -m tests.parking.test_shipped_scenarios`` prints all of them, and the share.
 """

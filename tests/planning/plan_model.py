@@ -3,9 +3,10 @@
 import sys
 from typing import Annotated, NamedTuple
 
-from controller_fmu.planning.plan import Path, path_of, search_to, status_of, take_corner
-from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Request
+from controller_fmu.parking.geometry.polygons import MAP_VERTICES, ObstacleMap, Vertex
+from controller_fmu.parking.planning.planner import PlannedPath, planned_path, search_status, search_until
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.model import Model
 from modelkit.signal import Signal
 
@@ -15,12 +16,12 @@ class State(NamedTuple):
 
 
 class Scene(NamedTuple):
-    corners: tuple[Corner, ...] = (Corner(),) * CORNERS
+    corners: tuple[Vertex, ...] = (Vertex(),) * MAP_VERTICES
 
 
 class Params(NamedTuple):
     scene: Scene = Scene()
-    request: Request = Request()
+    request: PlanningRequest = PlanningRequest()
     each: Annotated[int, Signal("1", "steps of the search at each call")] = 5
 
 
@@ -30,19 +31,17 @@ class Input(NamedTuple):
 
 class Output(NamedTuple):
     status: int = 0
-    path: Path = Path()
+    path: PlannedPath = PlannedPath()
 
 
 def initialize(params: Params) -> tuple[State, Output]:
     return State(), Output()
 
 
-def step(store: PlanStore, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
+def step(store: PlanningWork, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
     count = state.count + params.each
-    for number, corner in enumerate(params.scene.corners):
-        take_corner(store, number, corner)
-    search_to(store, params.request, count)
-    return State(count), Output(status_of(store), path_of(store))
+    search_until(store, ObstacleMap(), params.scene.corners, params.request, count)
+    return State(count), Output(search_status(store), planned_path(store))
 
 
 MODEL = Model(
@@ -57,5 +56,5 @@ MODEL = Model(
     step=step,
     step_size=0.01,
     stop_time=1.0,
-    store=PlanStore,
+    store=PlanningWork,
 )

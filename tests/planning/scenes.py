@@ -9,14 +9,16 @@ from typing import Any
 import shapely
 from shapely.geometry import Polygon
 
-from controller_fmu.planning.plan import PLANNING, begin, search_to, take_corner
-from controller_fmu.planning.plan_store import COUNT, KEPT_COUNT, STATUS, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, PlannedCar, Request, drive
+from controller_fmu.parking.geometry.outline import VehicleOutline, pose_along_arc
+from controller_fmu.parking.geometry.polygons import MAP_VERTICES, ObstacleMap, Vertex
+from controller_fmu.parking.planning.planner import PlanningStatus, begin, search_until
+from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
+from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 from tests.planning.plan_model import Scene
 
-CAR = PlannedCar(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
+CAR = VehicleOutline(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
 """The competition's car."""
 
 
@@ -44,31 +46,42 @@ def read_case(number: Any) -> Any:
 
 def scene_of(polygons: Any) -> Any:
     """Return polygons as the planner's scene."""
-    corners = [Corner(x, y, number + 1) for number, polygon in enumerate(polygons) for x, y in polygon]
-    return Scene(tuple(corners + [Corner()] * (CORNERS - len(corners))))
+    corners = [Vertex(x, y, number + 1) for number, polygon in enumerate(polygons) for x, y in polygon]
+    return Scene(tuple(corners + [Vertex()] * (MAP_VERTICES - len(corners))))
 
 
-def take(store: Any, scene: Any) -> None:
-    """Let the planner take over a scene."""
-    for number, corner in enumerate(scene.corners):
-        take_corner(store, number, corner)
+MAX_CUSPS = 25
 
 
-def plan(request: Request, scene: Any, store: Any = None, at_a_time: Any = 200, most: Any = 4000) -> Any:
+NO_DYNAMICS = DrivingDynamics()
+
+
+def request_of(start: Pose, goal: Pose, margin: float, dynamics: DrivingDynamics = NO_DYNAMICS) -> PlanningRequest:
+    """Return a request of the competition's car in a known map."""
+    return PlanningRequest(start, goal, CAR, margin, MAX_CUSPS, dynamics, True)
+
+
+def search(store: Any, scene: Any, request: PlanningRequest, count: int) -> None:
+    """Bring the search among a scene's polygons to ``count`` steps."""
+    search_until(store, ObstacleMap(), scene.corners, request, count)
+
+
+def plan(request: PlanningRequest, scene: Any, store: Any = None, at_a_time: Any = 200, max_steps: Any = 4000) -> Any:
     """Return the store after the search for ``request`` has ended."""
-    store = new_store(PlanStore) if store is None else store
-    take(store, scene)
-    begin(store, request)
-    for count in range(at_a_time, most, at_a_time):
-        search_to(store, request, count)
-        if store.mark[STATUS] != PLANNING:
+    store = new_store(PlanningWork) if store is None else store
+    begin(store, ObstacleMap(), scene.corners, request)
+    for count in range(at_a_time, max_steps, at_a_time):
+        search(store, scene, request, count)
+        if store.counts[PlanCount.STATUS] != PlanningStatus.PLANNING:
             break
     return store
 
 
 def kept(store: Any) -> Any:
     """Return the path as (way, curvature) pairs."""
-    return [(store.kept_way[at], store.kept_k[at]) for at in range(store.mark[KEPT_COUNT])]
+    return [
+        (store.best_length[at], store.best_curvature[at]) for at in range(store.counts[PlanCount.BEST_SEGMENT_COUNT])
+    ]
 
 
 def poses_along(start: Any, pieces: Any, step: Any = 0.01) -> Any:
@@ -76,15 +89,17 @@ def poses_along(start: Any, pieces: Any, step: Any = 0.01) -> Any:
     found = []
     for way, k in pieces:
         count = max(1, math.ceil(abs(way) / step))
-        found += [drive(start, way * number / count, k) for number in range(count)]
-        start = drive(start, way, k)
+        found += [pose_along_arc(start, way * number / count, k) for number in range(count)]
+        start = pose_along_arc(start, way, k)
     return [*found, start]
 
 
 def outline_of(pose: Any, car: Any) -> Any:
     """Return the car's outline as a polygon of shapely."""
     cos, sin = math.cos(pose.heading), math.sin(pose.heading)
-    sides = [(car.ahead + a * car.half_length, b * car.half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    sides = [
+        (car.centre_ahead + a * car.half_length, b * car.half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    ]
     return Polygon([(pose.x + x * cos - y * sin, pose.y + x * sin + y * cos) for x, y in sides])
 
 
@@ -98,6 +113,3 @@ def bits_of(store: Any) -> Any:
     """Return all that a store holds, as bytes, but for the scratch space of words."""
     names = [name for name in store._fields if not name.startswith("word")]
     return {name: bytes(array(getattr(store, name).typecode, getattr(store, name))) for name in names}
-
-
-__all__ = ["COUNT", "Request"]

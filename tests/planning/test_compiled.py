@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.planning.plan import PLANNED, PLANNING
-from controller_fmu.planning.task import Dynamics, Request
+from controller_fmu.parking.planning.planner import PlanningStatus
+from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
 from fmus.compiler import translate
 from modelkit.vocabulary import Pose
 from tests.compiler.c_model import CModel
 from tests.planning import plan_model
 from tests.planning.plan_model import Input, Params
-from tests.planning.scenes import CAR, least_clearance, poses_along, read_case, scene_of, tpcap_folder
+from tests.planning.scenes import CAR, least_clearance, poses_along, read_case, request_of, scene_of, tpcap_folder
 
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
 BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]
@@ -28,14 +28,14 @@ def translation() -> Any:
     return translate(plan_model.MODEL)
 
 
-def twins(translation: Any, folder: Any, scene: Any, request: Request, each: Any) -> Any:
+def twins(translation: Any, folder: Any, scene: Any, request: PlanningRequest, each: Any) -> Any:
     """Return the planner in C and in CPython, and both outputs' differences after each call until it has ended."""
     compiled = CModel(plan_model.MODEL, translation, folder)
     params = Params(scene, request, each)
     compiled.initialize(params)
     store = plan_model.MODEL.new_store()
     step, (state, outputs) = plan_model.MODEL.stepper(store), plan_model.MODEL.initialize(params)
-    while outputs.status == PLANNING:
+    while outputs.status == PlanningStatus.PLANNING:
         state, outputs = step(state, Input(), params, 0)
         compiled.step(Input(), 0)
         assert compiled.differing(state, outputs) == []
@@ -44,16 +44,19 @@ def twins(translation: Any, folder: Any, scene: Any, request: Request, each: Any
 
 
 def test_between_two_boxes(translation: Any, folder: Any) -> None:
-    dynamics = Dynamics(2.8, 0.45, 0.95 * CAR.curvature, 0.8, 1.0, 0.5)
-    request = Request(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), CAR, 0.1, dynamics)
-    assert twins(translation, folder, scene_of(BOXES), request, 9).status == PLANNED
+    dynamics = DrivingDynamics(2.8, 0.45, 0.95 * CAR.max_curvature, 0.8, 1.0, 0.5)
+    request = request_of(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), 0.1, dynamics)
+    assert twins(translation, folder, scene_of(BOXES), request, 9).status == PlanningStatus.PLANNED
 
 
 @TPCAP
 @pytest.mark.parametrize("number", [6, 12, 17])
 def test_cases_of_tpcap(translation: Any, folder: Any, number: int) -> None:
     start, goal, polygons = read_case(number)
-    assert twins(translation, folder, scene_of(polygons), Request(start, goal, CAR, 0.1), 25).status == PLANNED
+    assert (
+        twins(translation, folder, scene_of(polygons), request_of(start, goal, 0.1), 25).status
+        == PlanningStatus.PLANNED
+    )
 
 
 @TPCAP
@@ -61,12 +64,12 @@ def test_cases_of_tpcap(translation: Any, folder: Any, number: int) -> None:
 def test_all_cases_of_tpcap_in_c(translation: Any, folder: Any, number: Any) -> None:
     start, goal, polygons = read_case(number)
     compiled = CModel(plan_model.MODEL, translation, folder)
-    compiled.initialize(Params(scene_of(polygons), Request(start, goal, CAR, 0.1), 50))
-    while compiled.outputs.status == PLANNING:
+    compiled.initialize(Params(scene_of(polygons), request_of(start, goal, 0.1), 50))
+    while compiled.outputs.status == PlanningStatus.PLANNING:
         compiled.step(Input(), 0)
-    assert compiled.outputs.status == PLANNED
+    assert compiled.outputs.status == PlanningStatus.PLANNED
     path = compiled.outputs.path
-    pieces = [(piece.way, piece.k) for piece in path.pieces[: path.used]]
+    pieces = [(piece.distance, piece.curvature) for piece in path.segments[: path.used]]
     poses = poses_along(start, pieces)
     assert max(abs(a - b) for a, b in zip(poses[-1][:2], goal[:2], strict=True)) < 1e-4
     assert least_clearance(poses, polygons, CAR) >= path.margin - 1e-3

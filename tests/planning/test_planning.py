@@ -7,13 +7,15 @@ from itertools import accumulate, pairwise
 import pytest
 from shapely.geometry import LineString
 
-from controller_fmu.planning.clearance import edge_gap
-from controller_fmu.planning.joining import cheapest, word_way
-from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, path_of, search_to
-from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
-from controller_fmu.planning.room import BEYOND, LEFT, REACH, ROOMIEST
-from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
-from controller_fmu.planning.words import list_words, turn_of
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.geometry.outline_distance import edge_distance
+from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
+from controller_fmu.parking.planning.clearance_margin import EXAMINED_DISTANCE, MARGIN_LEFT, MAX_OFFSET, MAX_OVERRUN
+from controller_fmu.parking.planning.planner import PlanningStatus, planned_path
+from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
+from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
+from controller_fmu.parking.planning.work import WORDS, PlanCount, PlanningWork
 from modelkit.store import new_store, size_of
 from modelkit.vocabulary import Pose
 from tests.planning.scenes import (
@@ -25,8 +27,9 @@ from tests.planning.scenes import (
     plan,
     poses_along,
     read_case,
+    request_of,
     scene_of,
-    take,
+    search,
     tpcap_folder,
 )
 
@@ -36,70 +39,70 @@ BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0),
 
 def test_distance_to_an_edge_is_that_of_shapely() -> None:
     draw = random.Random(1)
-    box = outline_of(Pose(-CAR.ahead, 0.0, 0.0), CAR)
+    box = outline_of(Pose(-CAR.centre_ahead, 0.0, 0.0), CAR)
     for _ in range(500):
         ends = [draw.uniform(-6.0, 6.0) for _ in range(4)]
-        gap = math.sqrt(edge_gap(ends[0], ends[1], ends[2], ends[3], CAR, 1e6))
+        gap = math.sqrt(edge_distance(ends[0], ends[1], ends[2], ends[3], CAR, 1e6))
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 
 def test_every_word_ends_where_it_should() -> None:
     draw = random.Random(2)
-    store = new_store(PlanStore)
-    rung = Rung._make([*[True] * 2, *[1.0] * 6, 1])
-    task = Task(ORIGIN, ORIGIN, CAR, SearchWindow(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, rung)
+    store = new_store(PlanningWork)
+    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
+    problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
-        count = list_words(store, ORIGIN, end, 0.0, 0.0, task)
+        count = list_words(store, ORIGIN, end, 0.0, 0.0, problem)
         assert 32 <= count <= WORDS
         for word in range(count):
             pose = ORIGIN
             for piece in range(5):
-                turn = turn_of(store.word_code[word], piece)
-                pose = drive(pose, word_way(store, word, piece), turn * CAR.curvature)
+                turn = store.word_code[word] // 3**piece % 3 - 1
+                pose = pose_along_arc(pose, word_length(store, word, piece), turn * CAR.max_curvature)
             assert math.hypot(pose.x - end.x, pose.y - end.y) < 1e-4
             assert abs(math.remainder(pose.heading - end.heading, 2.0 * math.pi)) < 1e-5
-        least = sum(abs(word_way(store, cheapest(store, count), piece)) for piece in range(5))
+        least = sum(abs(word_length(store, cheapest_word(store, count), piece)) for piece in range(5))
         assert least >= math.hypot(end.x, end.y) - 1e-9
 
 
 def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
-    request = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    request = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     store = plan(request, scene_of(BOXES))
-    assert store.mark[STATUS] == PLANNED
+    assert store.counts[PlanCount.STATUS] == PlanningStatus.PLANNED
     poses = poses_along(request.start, kept(store))
     assert math.dist(poses[-1][:2], request.goal[:2]) < 1e-4
     assert least_clearance(poses, BOXES, CAR) >= 0.1 - 1e-3
 
 
 def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
-    request = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    request = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     store = plan(request, scene_of(BOXES))
-    path = path_of(store)
-    pieces = [(piece.way, piece.k) for piece in path.pieces[: path.used]]
+    path = planned_path(store)
+    pieces = [(piece.distance, piece.curvature) for piece in path.segments[: path.used]]
     poses, begin = poses_along(request.start, pieces), request.start
     gone = [math.dist(one[:2], other[:2]) for one, other in pairwise(poses)]
     places, at = [0.0, *accumulate(gone)], 0.0
     cusps = joints = 0
-    for number, piece in enumerate(path.pieces[: path.used]):
+    for number, piece in enumerate(path.segments[: path.used]):
         way, k = pieces[number - 1]
-        if number > 0 and way * piece.way < 0.0:
-            on = [drive(begin, math.copysign(share * piece.room, way), k) for share in (0.25, 0.5, 1.0)]
+        if number > 0 and way * piece.distance < 0.0:
+            on = [pose_along_arc(begin, math.copysign(share * piece.clearance, way), k) for share in (0.25, 0.5, 1.0)]
             assert least_clearance(on, BOXES, CAR) >= path.margin - 1e-3
-            farther = drive(begin, math.copysign(piece.room + 0.02, way), k)
-            assert piece.room == BEYOND or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
+            farther = pose_along_arc(begin, math.copysign(piece.clearance + 0.02, way), k)
+            assert piece.clearance == MAX_OVERRUN or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
             cusps += 1
-        elif number > 0 and piece.k != k:
-            assert 0.0 <= piece.room <= ROOMIEST
-            if piece.room > 0.0:
-                ramp = ramp_poses(begin, pieces[number - 1 : number + 1], piece.room)
-                assert least_clearance(ramp, BOXES, CAR) >= LEFT * path.margin - 0.01
+        elif number > 0 and piece.curvature != k:
+            assert 0.0 <= piece.clearance <= MAX_OFFSET
+            if piece.clearance > 0.0:
+                ramp = ramp_poses(begin, pieces[number - 1 : number + 1], piece.clearance)
+                assert least_clearance(ramp, BOXES, CAR) >= MARGIN_LEFT * path.margin - 0.01
                 joints += 1
         elif number == 0:
-            near = [pose for pose, place in zip(poses, places, strict=True) if abs(place - at) <= REACH]
+            near = [pose for pose, place in zip(poses, places, strict=True) if abs(place - at) <= EXAMINED_DISTANCE]
             least = min(1.0, least_clearance(near, BOXES, CAR))
-            assert piece.room == pytest.approx(max(0.0, least - path.margin), abs=0.03)
-        at, begin = at + abs(piece.way), drive(begin, piece.way, piece.k)
+            assert piece.clearance == pytest.approx(max(0.0, least - path.margin), abs=0.03)
+        at, begin = at + abs(piece.distance), pose_along_arc(begin, piece.distance, piece.curvature)
     assert cusps > 0 < joints
 
 
@@ -108,52 +111,50 @@ def ramp_poses(joint: Pose, pieces: list[tuple[float, float]], off: float) -> li
     (way, k0), (after, k1) = pieces
     length = min(math.sqrt(24.0 * off / abs(k1 - k0)), 2.0 * abs(way), 2.0 * abs(after))
     direction, count = math.copysign(1.0, way), 200
-    pose = drive(joint, -direction * 0.5 * length, k0)
+    pose = pose_along_arc(joint, -direction * 0.5 * length, k0)
     poses = [pose]
     for number in range(count):
-        pose = drive(pose, direction * length / count, k0 + (k1 - k0) * (number + 0.5) / count)
+        pose = pose_along_arc(pose, direction * length / count, k0 + (k1 - k0) * (number + 0.5) / count)
         poses.append(pose)
     return poses
 
 
 def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split() -> None:
-    request = Request(Pose(1.0, 3.0, 0.2), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
-    other = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    request = request_of(Pose(1.0, 3.0, 0.2), Pose(-1.2, -2.0, 0.0), 0.1)
+    other = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     scene = scene_of(BOXES)
-    once = plan(request, scene, at_a_time=60, most=61)
-    again = new_store(PlanStore)
-    take(again, scene)
-    search_to(again, other, 25)  # something else stands in the store
+    once = plan(request, scene, at_a_time=60, max_steps=61)
+    again = new_store(PlanningWork)
+    search(again, scene, other, 25)  # something else stands in the store
     for count in (3, 17, 41, 60):
-        search_to(again, request, count)
-    assert again.mark[COUNT] == once.mark[COUNT] == 60
+        search(again, scene, request, count)
+    assert again.counts[PlanCount.COUNT] == once.counts[PlanCount.COUNT] == 60
     assert bits_of(again) == bits_of(once)
-    search_to(again, request, 70)
-    search_to(again, request, 60)  # back in time: done anew
+    search(again, scene, request, 70)
+    search(again, scene, request, 60)  # back in time: done anew
     assert bits_of(again) == bits_of(once)
-    take(again, scene_of(BOXES[:1]))
-    take(again, scene)
-    search_to(again, request, 60)  # another scene meanwhile: done anew
+    search(again, scene_of(BOXES[:1]), request, 10)
+    search(again, scene, request, 60)  # another scene meanwhile: done anew
     assert bits_of(again) == bits_of(once)
 
 
 def test_start_or_goal_on_an_obstacle_is_said() -> None:
     scene = scene_of(BOXES)
     free, blocked = Pose(1.0, 3.0, 0.0), Pose(-6.0, -2.0, 0.0)
-    assert plan(Request(blocked, free, CAR, 0.1), scene).mark[STATUS] == START_BLOCKED
-    assert plan(Request(free, blocked, CAR, 0.1), scene).mark[STATUS] == GOAL_BLOCKED
+    assert plan(request_of(blocked, free, 0.1), scene).counts[PlanCount.STATUS] == PlanningStatus.START_BLOCKED
+    assert plan(request_of(free, blocked, 0.1), scene).counts[PlanCount.STATUS] == PlanningStatus.GOAL_BLOCKED
 
 
 def test_the_store_is_small() -> None:
-    assert size_of(PlanStore) < 2_000_000
+    assert size_of(PlanningWork) < 2_000_000
 
 
 @pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
 @pytest.mark.parametrize("number", [6, 12, 17])
 def test_easy_cases_of_tpcap(number: int) -> None:
     start, goal, polygons = read_case(number)
-    store = plan(Request(start, goal, CAR, 0.1), scene_of(polygons))
-    assert store.mark[STATUS] == PLANNED
+    store = plan(request_of(start, goal, 0.1), scene_of(polygons))
+    assert store.counts[PlanCount.STATUS] == PlanningStatus.PLANNED
     poses = poses_along(start, kept(store))
     assert math.dist(poses[-1][:2], goal[:2]) < 1e-4
     assert least_clearance(poses, polygons, CAR) >= 0.1 - 1e-3

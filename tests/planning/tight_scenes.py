@@ -6,12 +6,13 @@ from typing import Any, NamedTuple
 
 from shapely.geometry import Polygon
 
-from controller_fmu.planning.ladder import MIN_MARGIN
-from controller_fmu.planning.plan import GOAL_BLOCKED, NO_ROOM, NO_WAY, PLANNED, PLANNING, START_BLOCKED
-from controller_fmu.planning.task import Request, drive
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.planning.planner import PlanningStatus
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.planning.search_schedule import MIN_MARGIN
 from modelkit.vocabulary import Pose
 from tests.planning.plan_model import Input, Params
-from tests.planning.scenes import CAR, least_clearance, outline_of, poses_along, scene_of
+from tests.planning.scenes import CAR, least_clearance, outline_of, poses_along, request_of, scene_of
 
 MOST_ROOM = 0.02
 STEP = 0.002
@@ -19,13 +20,19 @@ STEP = 0.002
 ROUNDING = 1e-4
 """What a pose of the tree is rounded by [m]."""
 MOST_CALLS = 400
+REFUSALS = (
+    PlanningStatus.NO_PATH,
+    PlanningStatus.START_BLOCKED,
+    PlanningStatus.GOAL_BLOCKED,
+    PlanningStatus.MARGIN_TOO_SMALL,
+)
 
 
 class TightScene(NamedTuple):
     """A request among polygons."""
 
     kind: str
-    request: Request
+    request: PlanningRequest
     polygons: list[list[tuple[float, float]]]
 
 
@@ -46,7 +53,7 @@ def rectangle(pose: Pose, x: float, y: float, length: float, width: float) -> li
 
 def beside(pose: Pose, room: float, draw: random.Random) -> list[tuple[float, float]]:
     """Return a box with ``room`` [m] to the outline of a car: at a side, ahead, behind, or off a corner of it."""
-    front, rear, side = CAR.ahead + CAR.half_length, CAR.ahead - CAR.half_length, CAR.half_width
+    front, rear, side = CAR.centre_ahead + CAR.half_length, CAR.centre_ahead - CAR.half_length, CAR.half_width
     length, width = draw.uniform(0.05, 4.0), draw.uniform(0.05, 2.0)
     place = draw.choice(("left", "right", "ahead", "behind", "corner"))
     if place == "left":
@@ -63,7 +70,7 @@ def beside(pose: Pose, room: float, draw: random.Random) -> list[tuple[float, fl
 
 def slot(goal: Pose, room: float, draw: random.Random) -> list[list[tuple[float, float]]]:
     """Return two neighbours and what ends the slot, one of the three with ``room`` [m] to the car at the goal."""
-    front, rear, side = CAR.ahead + CAR.half_length, CAR.ahead - CAR.half_length, CAR.half_width
+    front, rear, side = CAR.centre_ahead + CAR.half_length, CAR.centre_ahead - CAR.half_length, CAR.half_width
     rooms = [draw.uniform(0.05, 0.6) for _ in range(3)]
     rooms[draw.randrange(3)] = room
     length = front - rear
@@ -82,7 +89,9 @@ def draw_scene(seed: int) -> TightScene:
     away, towards = draw.uniform(3.0, 9.0), draw.uniform(-math.pi, math.pi)
     start = Pose(away * math.cos(towards), away * math.sin(towards), draw.uniform(-math.pi, math.pi))
     if kind == "slot":
-        start = drive(drive(goal, draw.uniform(6.0, 8.0), 0.0), draw.uniform(-3.0, 3.0), draw.choice((-0.2, 0.2)))
+        start = pose_along_arc(
+            pose_along_arc(goal, draw.uniform(6.0, 8.0), 0.0), draw.uniform(-3.0, 3.0), draw.choice((-0.2, 0.2))
+        )
     if kind == "goal" and draw.random() < 0.1:
         start = goal
     polygons = [beside(start, draw.uniform(0.0, MOST_ROOM), draw)] if kind in ("start", "both") else []
@@ -95,7 +104,7 @@ def draw_scene(seed: int) -> TightScene:
         )
         if not any(area.intersects(_polygon(box)) for area in free):
             polygons.append(box)
-    return TightScene(kind, Request(start, goal, CAR, draw.choice((0.0, 0.05, 0.1, 0.15))), polygons)
+    return TightScene(kind, request_of(start, goal, draw.choice((0.0, 0.05, 0.1, 0.15))), polygons)
 
 
 def replanned(scene: TightScene, plan: Plan, seed: int) -> TightScene:
@@ -115,10 +124,12 @@ def planned_by(model: Any, scene: TightScene, each: int = 400) -> Plan:
     model.initialize(Params(scene_of(scene.polygons), scene.request, each))
     for _ in range(MOST_CALLS):
         model.step(Input(), 0)
-        if model.outputs.status != PLANNING:
+        if model.outputs.status != PlanningStatus.PLANNING:
             break
     path = model.outputs.path
-    return Plan(model.outputs.status, path.margin, [(piece.way, piece.k) for piece in path.pieces[: path.used]])
+    return Plan(
+        model.outputs.status, path.margin, [(piece.distance, piece.curvature) for piece in path.segments[: path.used]]
+    )
 
 
 def clearance_along(scene: TightScene, plan: Plan) -> float:
@@ -129,8 +140,8 @@ def clearance_along(scene: TightScene, plan: Plan) -> float:
 
 def mistake_of(scene: TightScene, plan: Plan) -> str:
     """Return what is wrong with an answer: a path keeps half its margin and ends at the goal, or there is a reason."""
-    if plan.status != PLANNED:
-        known = plan.status in (NO_WAY, START_BLOCKED, GOAL_BLOCKED, NO_ROOM)
+    if plan.status != PlanningStatus.PLANNED:
+        known = plan.status in REFUSALS
         return "" if known and not plan.pieces else f"no path and no reason: status {plan.status}"
     if plan.margin < MIN_MARGIN:
         return f"margin {plan.margin} m"

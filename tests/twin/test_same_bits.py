@@ -44,7 +44,7 @@ SCENARIOS = [
     for name in scenario_names()
     if load_scenario(name, []).models == MODELS
 ]
-"""Those of a controller apart, the valet, have their own: tests/valet."""
+"""Those of a controller apart have their own: tests/planning."""
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
 """The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""
 SLOW = 2.0

@@ -31,7 +31,7 @@ exit codes: 0 a valid optimum, 1 none or not parked, 2 bad input
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("scene", metavar="SCENE", help="scenario of the valet: a name or a YAML file")
+    parser.add_argument("scene", metavar="SCENE", help="scenario with a known target: a name or a YAML file")
     parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: runs/bench/optimal/NAME)")
     parser.add_argument("--json", action="store_true", help="print JSON")
 

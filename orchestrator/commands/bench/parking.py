@@ -19,7 +19,7 @@ from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
 
 OTHER_SYSTEMS = {"parking": PARKING_SYSTEM}
 EXAMPLES = """examples:
-  apa bench parking                              the shipped scenarios of the valet
+  apa bench parking                              the shipped scenarios valet-*
   apa import tpcap cases --out tpcap             scenes of TPCAP, ParkBench: see apa import --help
   apa bench parking tpcap parkbench --out results
   apa bench parking tpcap --system parking

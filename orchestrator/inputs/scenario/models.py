@@ -5,6 +5,8 @@ from collections.abc import Mapping
 import controller_fmu
 import vehicle_fmu
 from modelkit.model import Model
+from orchestrator.inputs.text.errors import MIGRATE, BadInput
+from orchestrator.inputs.text.renamed_names import VALUES
 
 MODELS: dict[str, Model] = {"vehicle": vehicle_fmu.MODEL, "controller": controller_fmu.MODEL}
 """Those of a run whose scenario asks for nothing else."""
@@ -22,8 +24,14 @@ def apart_models() -> dict[str, Model]:
 
 
 def models_for(controller: Mapping[str, object]) -> dict[str, Model]:
-    """Return the models of a run, by the system that the controller's parameters choose: a name or a number."""
+    """Return the models of a run, by the system that the controller's parameters choose: a name or a number.
+
+    Raises ``BadInput`` for a name of an earlier version.
+    """
     asked = controller.get("system")
+    now = VALUES["system"].get(asked.lower()) if isinstance(asked, str) else None
+    if now:
+        raise BadInput(f"{asked!r} is called {now} now{MIGRATE}", key="controller.system")
     for name, choice in APART.items():
         if asked == int(choice) or (isinstance(asked, str) and asked.lower() == name):
             return {**MODELS, "controller": controller_fmu.APART[choice]}

@@ -113,7 +113,7 @@ class Scenario(_ScenarioPart):
     system: SystemText | None = None
     """Components, connections and roles of a system that contains third-party FMUs."""
     obstacles: list[list[tuple[Metres, Metres]]] = []
-    """Polygons, convex or not, as lists of corners [m]: the map of the valet. The sensors do not measure them."""
+    """Polygons, convex or not, as lists of corners [m]: a known map. The sensors do not measure them."""
     faults: list[Fault] = []
     """Disturbances of signals."""
     requirements: list[Requirement] = []

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from controller_fmu import APART
 from orchestrator.inputs.scenario.models import APART as SYSTEMS
 from orchestrator.inputs.scenario.obstacle_map import map_capacity
-from orchestrator.inputs.scenario.tpcap import PLAN_MARGIN, STOP_TIME
+from orchestrator.inputs.scenario.tpcap import MIN_PLAN_MARGIN, PLAN_MARGIN, STOP_TIME
 from orchestrator.inputs.text.errors import BadInput
 
 MAX_DISTANCE = 60.0
@@ -56,9 +56,9 @@ def read_parkbench(path: Path) -> dict[str, Any]:
     vehicle = scene.vehicle()
     walls, left_out = _walls(scene, target, vehicle)
     corners = 2 * len(walls)
-    system = next((name for name in ("valet", "valet_large") if corners <= map_corners(name)), "")
+    system = next((name for name in ("parking", "parking_large") if corners <= map_corners(name)), "")
     if not system:
-        raise BadInput(f"{corners} corners, the largest map holds {map_corners('valet_large')}", file=path)
+        raise BadInput(f"{corners} corners, the largest map holds {map_corners('parking_large')}", file=path)
     start = scene.start
     return {
         "name": path.stem,
@@ -70,7 +70,11 @@ def read_parkbench(path: Path) -> dict[str, Any]:
         "target": {"x": 0.0, "y": 0.0, "heading": target[2]},
         "obstacles": [[list(a), list(b)] for a, b in walls],
         "vehicle": {"start": {"x": start[0] - target[0], "y": start[1] - target[1], "heading": start[2]}},
-        "controller": {"system": system, "plan": {"margin": PLAN_MARGIN}},
+        "controller": {
+            "system": system,
+            "search": {"active": False},
+            "plan": {"margin": PLAN_MARGIN, "min_margin": MIN_PLAN_MARGIN},
+        },
         "requirements": ["valet"],
         "expected_outcome": "parked",
     }

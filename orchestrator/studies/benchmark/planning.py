@@ -1,4 +1,4 @@
-"""How long a system plans, sample by sample: its compiled code alone, called as the vehicle stands at the start."""
+"""How long the planner takes, sample by sample: its compiled code alone, called as the vehicle stands at the start."""
 
 import time
 from typing import NamedTuple
@@ -16,22 +16,7 @@ SAMPLE_NS = 10_000_000
 MAX_SAMPLES = 6000
 FREE_RANGE = 5.0
 """What the ultrasonic sensors measure [m]: no echo."""
-REASON = "reason"
-
-
-class PlannerSignals(NamedTuple):
-    """Outputs of a controller that tell of its planner."""
-
-    steps: str
-    segments: str
-    """Of the path; 0: there is none."""
-    margin: str
-
-
-PLANNERS = (
-    PlannerSignals("valet.searched", "valet.pieces", "valet.margin"),
-    PlannerSignals("parking.steps", "parking.segments", "parking.margin"),
-)
+SEARCHED, PIECES, MARGIN, REASON = "parking.steps", "parking.segments", "parking.margin", "reason"
 
 
 class FoundPlan(NamedTuple):
@@ -56,19 +41,18 @@ class FoundPlan(NamedTuple):
 def plan_scene(scenario: Scenario, passes: int = 3) -> FoundPlan:
     """Return the plan of a scene. Raises ``BadInput`` if its controller has no planner of its own."""
     names = [item.name for item in variables(scenario.models["controller"].outputs)]
-    signals = next((item for item in PLANNERS if {*item, REASON} <= {*names}), None)
-    if signals is None:
-        text = "this controller plans no path to the target: expected valet, valet_large or parking"
+    if SEARCHED not in names or any(name not in names for name in (PIECES, MARGIN, REASON)):
+        text = "this controller plans no path to the target: expected parking or parking_large"
         raise BadInput(text, file=scenario.file, key="controller.system")
-    done = [_run_planner(scenario, names, signals) for _ in range(passes)]
+    done = [_run_planner(scenario, names) for _ in range(passes)]
     outputs = done[0][0]
     times = np.min([item[1] for item in done], axis=0)
-    found = outputs[signals.segments] > 0.0
+    found = outputs[PIECES] > 0.0
     reason = "" if found else _reason(scenario, outputs[REASON])
-    return FoundPlan(found, reason, int(outputs[signals.steps]), outputs[signals.margin], tuple(times.tolist()))
+    return FoundPlan(found, reason, int(outputs[SEARCHED]), outputs[MARGIN], tuple(times.tolist()))
 
 
-def _run_planner(scenario: Scenario, names: list[str], signals: PlannerSignals) -> tuple[dict[str, float], list[float]]:
+def _run_planner(scenario: Scenario, names: list[str]) -> tuple[dict[str, float], list[float]]:
     """Return the outputs when the search has ended, and the processor time [s] of each sample until then."""
     model = scenario.models["controller"]
     library = load_model(model)
@@ -79,7 +63,7 @@ def _run_planner(scenario: Scenario, names: list[str], signals: PlannerSignals) 
     u, y = np.array(list(inputs.values()), dtype=float), np.zeros(len(names))
     memory = np.zeros(memory_size(library), dtype=np.uint8)
     library.model_start(memory.ctypes.data, params.ctypes.data, y.ctypes.data)
-    ends = names.index(signals.segments), names.index(REASON)
+    ends = names.index(PIECES), names.index(REASON)
     times: list[float] = []
     while not y[ends[0]] and not y[ends[1]] and len(times) < MAX_SAMPLES:
         begun = time.thread_time()

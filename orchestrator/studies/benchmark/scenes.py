@@ -101,7 +101,7 @@ def scenes_in(
 
 
 def valet_scenarios() -> list[str]:
-    """Return the names of the shipped scenarios of the valet."""
+    """Return the names of the shipped scenarios with a known goal or angled rows."""
     return [name for name in scenario_names() if name.startswith(VALET_PREFIX)]
 
 

@@ -1,4 +1,4 @@
-"""Slots that the valet has to find, drawn by lot: kinds, angles, neighbours, pillars, ends, streets, sides, ways past.
+"""Slots that have to be found, drawn by lot: kinds, angles, neighbours, pillars, ends, streets, sides, ways past.
 
 All of a run follows from its number and the lot. Corner A lies near the origin, the row to the right of x (to the left
 on the other side, as a mirror image), the street to its left.

@@ -4,7 +4,7 @@ import math
 import random
 from typing import Any, NamedTuple
 
-from controller_fmu.valet.params import SlotWish
+from controller_fmu.common.external_slot import SlotKind
 from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.obstacle_map import box_corners
 from orchestrator.inputs.scenario.requirements import library_requirements
@@ -20,13 +20,16 @@ from orchestrator.studies.parking.detected_slot_cases import (
     standing_of,
 )
 from orchestrator.studies.parking.imperfect import imperfect
-from orchestrator.studies.parking.studied_systems import VALET_SYSTEM
+from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
 
 STOP_TIME = 240.0
 PLAN_MARGIN = 0.12
 APPROACH_DISTANCE = 3.0
 """The driver starts so far [m] before the neighbour that he passes first, and searches so far past the other."""
 START_OFFSET = 4.0
+STAND_OUT = 0.5
+"""Largest overhang of a parked vehicle beyond its neighbours' line [m]."""
+WANTED = {"parallel": SlotKind.PARALLEL, "nose in": SlotKind.NOSE_IN, "tail in": SlotKind.TAIL_IN}
 HANDOVER_DISTANCE = 4.0
 """Out of a slot, the car hands over so far [m] past the neighbour's middle."""
 PARKED_POSE_ERROR = 0.05
@@ -37,17 +40,17 @@ AT_WALL = 0.5
 
 
 def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
-    """Return the scenario of a case; ``reported``: the valet does not search, it is told the map and the target."""
+    """Return the scenario of a case; ``reported``: no search, the map and the target are known."""
     target, slot = standing_of(case)
-    wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
-        "system": VALET_SYSTEM,
+        "system": PARKING_SYSTEM,
         "plan.margin": PLAN_MARGIN,
         "search.active": not reported,
-        "search.wish": int(wish),
-        "search.open_ended": case.neighbours == "one",
-        "search.way": way_past(case).way,
+        "slot.wanted": int(WANTED[case.wish]),
+        "slot.open_ended": case.neighbours == "one",
+        "slot.distance": way_past(case).way,
+        "slot.stand_out": STAND_OUT,
     }
     if case.side < 0:
         target = target.model_copy(update={"y": -target.y, "heading": -target.heading})

@@ -1,4 +1,4 @@
-"""Slots that the valet has to find, as a study, and what it prints."""
+"""Slots that have to be found, as a study, and what it prints."""
 
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,6 @@ from orchestrator.studies.parking.detected_slot_cases import DetectedSlotCase, c
 from orchestrator.studies.parking.detected_slot_scenarios import out_of, scenario_of
 from orchestrator.studies.parking.studied_systems import (
     PARKING_SYSTEM,
-    VALET_SYSTEM,
     check_system,
     plan_measures,
     study_name,
@@ -35,7 +34,7 @@ def study(
     reported: bool = False,
     out: bool = False,
     ways: bool = False,
-    system: int = VALET_SYSTEM,
+    system: int = PARKING_SYSTEM,
 ) -> Study:
     """Return so many runs; ``reported``: the same with the map and the target told, no search: what could be parked.
 
@@ -43,7 +42,7 @@ def study(
     short one in which the system receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
     ``system``: what drives. Raises ``BadInput`` if that cannot.
     """
-    check_system("valet-slots", system, (VALET_SYSTEM, PARKING_SYSTEM))
+    check_system("valet-slots", system, (PARKING_SYSTEM,))
     scenarios = []
     for case in cases(runs, lot):
         scenario = out_of(case) if out else scenario_of(case, reported)
@@ -53,8 +52,8 @@ def study(
             scenarios.append(LabelledScenario(_labels(case, WAY), with_system(_planning_scenario(case), system)))
     scenario, design = design_of(scenarios)
     content = {
-        "name": study_name("valet-slots", system, VALET_SYSTEM),
-        "title": "Slot detection of the valet: kinds, angles, neighbours, walls, roads, sides, search paths",
+        "name": study_name("valet-slots", system, PARKING_SYSTEM),
+        "title": "Slot detection: kinds, angles, neighbours, walls, roads, sides, search paths",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact. No external slot.",
         "map": {"x": "angle", "y": "neighbours", "split": "end"},
     }
@@ -62,15 +61,15 @@ def study(
 
 
 def _planning_scenario(case: DetectedSlotCase) -> Scenario:
-    """Return the short scenario in which the valet plans with the map and the target told."""
+    """Return the short scenario in which the system plans with map and target known."""
     reported = _with_map(scenario_of(case, reported=True))
     return reported.model_copy(
-        update={"stop_time": PLANNING_TIME, "controller": reported.controller | {"plan.at_once": 100}}
+        update={"stop_time": PLANNING_TIME, "controller": reported.controller | {"plan.steps_per_sample": 100}}
     )
 
 
 def _with_map(scenario: Scenario) -> Scenario:
-    """Return the scenario with its map told to the valet."""
+    """Return the scenario with its map."""
     return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
 
 
@@ -118,7 +117,7 @@ def _by(rows: list[dict[str, Any]], factor: str) -> Printed:
 
 
 def _gbt(rows: list[dict[str, Any]]) -> str:
-    """Return how many of those that the valet says are parked stand as GB/T 41630 asks."""
+    """Return how many of those that the system says are parked stand as GB/T 41630 asks."""
     stand = [row for row in rows if row["outcome"] == "parked" or str(row["reason"]).startswith(BEYOND)]
     good = sum(row["outcome"] == "parked" for row in stand)
     return f"{100.0 * good / len(stand):.1f} %" if stand else ""

@@ -1,4 +1,4 @@
-"""The car of the valet's studies as it is: its body, and what its steering, brake, sensors and odometry get wrong."""
+"""The imperfect car of the studies of slots: its body, and what its steering, brake, sensors and odometry get wrong."""
 
 import random
 from typing import Any

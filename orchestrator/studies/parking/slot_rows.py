@@ -1,4 +1,4 @@
-"""Rows of slots at all angles as a study of the valet: cars, angles, tail or nose in, streets, ways to come.
+"""Rows of slots at all angles as a study: cars, angles, tail or nose in, streets, ways to come.
 
 Every slot is between two parked cars on each side, a wall behind the row and one across the street, all of them on the
 map; the slot is told by its corners. Seeds, body and errors are drawn from the number of the case and the lot.
@@ -25,7 +25,6 @@ from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.imperfect import imperfect
 from orchestrator.studies.parking.studied_systems import (
     PARKING_SYSTEM,
-    VALET_SYSTEM,
     check_system,
     plan_measures,
     study_name,
@@ -85,17 +84,18 @@ def scenario_of(case: RowCase) -> Scenario:
     heading = -turn if case.kind == "nose" else math.pi - turn
     ahead = 0.5 * length - car.rear_overhang
     target = Target(x=middle[0] - ahead * math.cos(heading), y=middle[1] - ahead * math.sin(heading), heading=heading)
-    slot = {"kind": KINDS[case.kind], "bx": opening, "heading": -turn, "depth": depth}
     scenario = Scenario(
         name="valet-rows",
         stop_time=STOP_TIME,
         vehicle=_vehicle(case, opening, middle, depth),
         controller={
             **car_parameters(car),
-            "system": VALET_SYSTEM,
+            "system": PARKING_SYSTEM,
             "search.active": False,
             "plan.margin": PLAN_MARGIN,
-            **{f"slot.{name}": value for name, value in slot.items()},
+            "target.x": target.x,
+            "target.y": target.y,
+            "target.heading": target.heading,
         },
         target=target,
         slot=Slot(x=middle[0], y=middle[1], heading=-turn, length=depth, width=width),
@@ -128,19 +128,19 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     return {**car_parameters(car), **scene, **start, **errors}
 
 
-def study(lot: int = 0, lots: int = 1, system: int = VALET_SYSTEM) -> Study:
+def study(lot: int = 0, lots: int = 1, system: int = PARKING_SYSTEM) -> Study:
     """Return all cases, ``lots`` times with other draws of start, noise and errors; ``system``: what drives them.
 
     Raises ``BadInput`` if that cannot.
     """
-    check_system("valet-rows", system, (VALET_SYSTEM, PARKING_SYSTEM))
+    check_system("valet-rows", system, (PARKING_SYSTEM,))
     chosen = [case for number in range(lot, lot + lots) for case in cases(number)]
     scenario, design = design_of(
         LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
     )
     content = {
-        "name": study_name("valet-rows", system, VALET_SYSTEM),
-        "title": "The valet in rows of slots: angles, tail or nose in, roads, starts, cars",
+        "name": study_name("valet-rows", system, PARKING_SYSTEM),
+        "title": "Rows of slots: angles, tail or nose in, roads, starts, cars",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact; the slot is known.",
         "map": {"x": "angle", "y": "street", "split": "kind"},
     }

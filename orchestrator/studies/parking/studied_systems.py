@@ -17,20 +17,14 @@ from orchestrator.inputs.scenario.requirements import Requirement
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 
-APA_SYSTEM, VALET_SYSTEM, PARKING_SYSTEM = 5, 7, 8
+APA_SYSTEM, PARKING_SYSTEM = 5, 8
 """Values of ``controller.system``."""
-VALETS = (VALET_SYSTEM, 10)
-"""The valet, and the same with a larger map."""
 NO_SIGNALS: Mapping[str, str] = MappingProxyType({})
 
 
 class StudiedSystem(NamedTuple):
     """What a study must know of a system."""
 
-    parameters: Mapping[str, str] = NO_SIGNALS
-    """Parameter of the valet -> what this system calls it."""
-    same_rules: Mapping[str, float] = MappingProxyType({})
-    """Parameters with which it stands in a slot by the valet's rules: how near to a kerb, how far out."""
     searching: Mapping[str, float | bool] = MappingProxyType({})
     """Parameters with which it searches slots as the others do by default."""
     shown: Instants | None = None
@@ -57,30 +51,7 @@ SYSTEMS: Mapping[int, StudiedSystem] = {
         },
         parking_time="controller.apa.parking_time",
     ),
-    VALET_SYSTEM: StudiedSystem(
-        searching={"search.active": True, "plan.margin": 0.12},
-        plan={
-            "plans": "controller.valet.plans",
-            "margin": "controller.valet.margin",
-            "layout": "controller.valet.slot.layout",
-            "into": "controller.valet.slot.heading",
-            "width": "controller.valet.slot.width",
-            "depth": "controller.valet.slot.depth",
-            "ax": "controller.valet.slot.ax",
-            "ay": "controller.valet.slot.ay",
-            "target_x": "controller.valet.target.x",
-            "target_y": "controller.valet.target.y",
-        },
-    ),
     PARKING_SYSTEM: StudiedSystem(
-        parameters={
-            "plan.at_once": "plan.steps_per_sample",
-            "plan.curvature_share": "plan.curvature_fraction",
-            "search.way": "slot.distance",
-            "search.open_ended": "slot.open_ended",
-            "search.wish": "slot.wanted",
-        },
-        same_rules={"slot.stand_out": 0.5},
         shown=Instants("controller.parking.state", (int(ParkingState.CONFIRMING),)),
         shown_slot={
             "a.x": "controller.parking.slot.ax",
@@ -119,23 +90,17 @@ def study_name(name: str, system: int, own: int) -> str:
 def with_system(scenario: Scenario, system: int) -> Scenario:
     """Return a scenario driven by ``system``: parameters that it does not have are left out.
 
-    A slot that is a parameter of the valet becomes the target pose. Raises ``BadInput`` if the map is too large.
+    Raises ``BadInput`` if the map is too large.
     """
     own = scenario.controller
     if own["system"] == system:
         return scenario
-    if own["system"] in VALETS:
-        own = {"search.active": False, **own}
     known = {item.name for item in variables(models_for({"system": system})["controller"].params)}
-    renamed = {SYSTEMS[system].parameters.get(name, name): value for name, value in own.items()}
-    if "slot.kind" in own and scenario.target is not None:
-        renamed |= {f"target.{axis}": float(value) for axis, value in scenario.target.model_dump().items()}
-    kept = {name: value for name, value in renamed.items() if name in known}
-    if any(name.startswith("map[") and name not in known for name in renamed):
+    if any(name.startswith("map[") and name not in known for name in own):
         room = sum(name.startswith("map[") for name in known) // 3
         raise BadInput(f"the map of system {system} holds {room} corners only", file=scenario.file, key="obstacles")
-    rules = SYSTEMS[system].same_rules if own["system"] in VALETS else {}
-    return scenario.model_copy(update={"controller": {**rules, **kept, "system": system}})
+    kept = {name: value for name, value in own.items() if name in known}
+    return scenario.model_copy(update={"controller": {**kept, "system": system}})
 
 
 def system_requirements(requirements: Sequence[Requirement], system: int) -> list[Requirement]:

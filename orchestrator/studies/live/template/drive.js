@@ -63,7 +63,7 @@ class Drive {
 
   plan() {
     const key = ["path.start.x", "path.segments[1].length", "apa.move.start.x", "apa.move.start.y", "apa.move.pieces[1].length", "apa.slot.a.x", "apa.slot.length", "apa.target.x", "apa.target.y",
-      "valet.move.start.x", "valet.move.start.y", "valet.move.pieces[1].length", "valet.slot.ax", "valet.slot.depth", "valet.target.x", "valet.target.y"]
+      "parking.move.start.x", "parking.move.start.y", "parking.move.pieces[1].length", "parking.slot.ax", "parking.slot.depth", "parking.goal.x", "parking.goal.y"]
       .map((name) => this.course.look(`controller.${name}`)).join();
     if (key === this.planKey) return;
     this.planKey = key;

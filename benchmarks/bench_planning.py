@@ -1,6 +1,7 @@
-"""How long the valet plans, sample by sample, and how it drives: ``python -m benchmarks.bench_valet [FILE.yaml ...]``.
+"""How long the planner takes, sample by sample, and the drive: ``python -m benchmarks.bench_planning [FILE.yaml ...]``.
 
-The scenarios are those of ``apa import tpcap``, or any with ``system: valet``; without a file, the shipped ones.
+The scenarios are those of ``apa import tpcap``, or others of ``parking`` with a known target; without a file, those
+shipped.
 Times are of the processor, compiled; samples are measured in three passes, of which the least counts, since other
 programs take their share.
 """

@@ -1,1 +1,0 @@
-"""What distance sensors tell of the surroundings, whatever way the car is turned: echoes, contour, slots."""

@@ -42,7 +42,7 @@ from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningReq
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.pull_out import free_box, pose_on_road, road_side, with_neighbours
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, least_depth, most_overhang, overhang_of
@@ -203,18 +203,22 @@ def corrected_slot(
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether a vehicle at ``pose`` is surely parked, as far as the slot is known, if not as finely as meant."""
+    """Return whether a vehicle at ``pose`` is surely parked, as far as the slot is known, if not as finely as meant.
+
+    Beside a kerb, too, it is so by where it stands beside its neighbours.
+    """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    goal = goal_pose(slot, outline, params.slot)
     room = 0.5 * (slot.ahead.start - slot.behind.end)
     along = params.final.accepted
+    sigma = slot.middle_sigma
+    flush = slot
     if slot.type == SlotType.PARALLEL:
         along = max(along, room - outline.half_length)
-    across = params.final.accepted
-    if slot.type == SlotType.PERPENDICULAR:
-        across -= params.slot.confidence * slot.middle_sigma
+        sigma = slot.front_sigma
+        flush = slot._replace(depth=UNKNOWN_DEPTH)
+    across = params.final.accepted - params.slot.confidence * sigma
     turn = params.final.accepted_heading - params.slot.confidence * slot.row.heading_sigma
-    near = is_near(pose, goal, along, across, turn)
+    near = is_near(pose, goal_pose(flush, outline, params.slot), along, across, turn)
     return near and overhang_of(slot, outline, pose) < most_overhang(slot, outline, params.slot)
 
 

@@ -76,14 +76,18 @@ def test_behind_a_pillar_nothing_is_known_of_a_flank() -> None:
     assert begun.state[2] == 0.0, "so short a front tells no heading"
 
 
-def test_what_the_slot_is_unsure_follows_from_both_corners() -> None:
+def test_what_the_slot_is_unsure_follows_from_both_neighbours() -> None:
+    """Half a vehicle deep its middle lies between flanks; all echoes share what 3 cm of mounting and surfaces err."""
     slot = slot_at()
     drifted = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)
     known = slot_of_filter(slot, drifted, OUTLINE)
-    for found, states in ((known.middle_sigma, [0, 3]), (known.front_sigma, [1, 4])):
-        mean = np.zeros(STATE_COUNT)
-        mean[states] = 0.5
-        assert found == pytest.approx(math.sqrt(mean @ matrix(drifted) @ mean))
+    turned = -0.5 * slot.row.side * OUTLINE.half_length
+    for found, weights in (
+        (known.middle_sigma, [0.5, 0.0, turned, 0.5, 0.0, turned, 0.0]),
+        (known.front_sigma, [0.0, 0.5, 0.0, 0.0, 0.5, 0.0, 0.0]),
+    ):
+        assert found == pytest.approx(math.sqrt(np.array(weights) @ matrix(drifted) @ weights + FRONT_SIGMA**2))
+    assert known.row.heading_sigma > slot.row.heading_sigma
 
 
 def test_a_heading_that_was_unknown_does_not_turn_the_row() -> None:

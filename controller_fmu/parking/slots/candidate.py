@@ -2,7 +2,8 @@
 
 Type hypotheses, compared by log-likelihood: cars that stand parallel show a side of about 4.4 m, cars that stand
 perpendicular a front of about 1.8 m; a side not seen in full says only how long it is at least. A kerb or wall at car
-width behind the row speaks for parallel. Undecided within a factor of ten the type follows from what fits.
+width behind the row speaks for parallel. Where the vehicle fits both ways the likelier one counts; a gap too short to
+park along is one only if that is ten times likelier.
 """
 
 import math
@@ -36,15 +37,15 @@ PAIR_SIGMA = 0.36
 RESOLVED_FRONT = 2.0
 MERGING_PENALTY = 0.7
 """Beyond this distance [m] of a front from the vehicle's middle, 1.2 m from its flank, the echoes of such a pair tell
-the cars apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two."""
+the cars apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two. Nearer, gaps of less than
+0.5 m are not observed: one in ten."""
 MERGED_LENGTH = 1.0
 """So much [m] of a side that is still being passed may be the next car's: the gap shows when as much is seen of it."""
 MAX_CAR = 6.0
 """A longer side [m] is a wall, and shows nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
-MAX_BAY = 3.5
-BAY_WIDTH = 2.5
+BAY_WIDTH = 2.6
 BAY_SIGMA = 0.3
 """Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
 INSET = 0.25
@@ -82,8 +83,8 @@ class SlotCandidate(NamedTuple):
     front_sigma: float = 0.0
     """Standard deviation of that line across the row [m], and of the middle of the gap along it."""
     middle_sigma: float = 0.0
-    bay: float = 0.0
-    """Distance of two cars that stand perpendicular, from middle to middle [m]; 0: the row does not repeat."""
+    depth_sigma: float = 0.03
+    """Standard deviation of what it ends at across the row [m]: of a surface from a straight line."""
     slope: float = 0.0
     """Of the road against the frame's x axis: in an angled row the frame is square to the direction into the slot."""
     is_nose_in: bool = False
@@ -150,15 +151,12 @@ def _candidate(
     if width < 2.0 * outline.half_width:
         return SlotCandidate()
     found = found._replace(front=0.5 * (behind.end_front + ahead.start_front))
-    found = found._replace(depth=gap_depth(found, landmarks, outline, params), bay=bay_width(row))
+    found = found._replace(depth=gap_depth(found, landmarks, outline, params))
     least_length = 2.0 * outline.half_length + slot.room_along
     least_width = 2.0 * outline.half_width + slot.room_across
     fits_parallel = width >= least_length
     fits_perpendicular = width >= least_width
-    ratio = log_likelihood_ratio(found)
-    parallel = ratio > DECIDED or (ratio > -DECIDED and fits_parallel and not fits_perpendicular)
-    parallel = parallel or (abs(ratio) <= DECIDED and fits_parallel)
-    parallel = parallel and row.slope == 0.0
+    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else DECIDED) and row.slope == 0.0
     parallel = parallel if slot.wanted == SlotKind.NONE else slot.wanted == SlotKind.PARALLEL
     fits = fits_parallel if parallel else fits_perpendicular
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
@@ -225,14 +223,14 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
         if number < candidate.row.used:
             member = candidate.row.members[number]
             length = member.end - member.start
-            if not (member.start_known and member.end_known):
-                length -= MERGED_LENGTH
             is_between_gaps = 0 < number < candidate.row.used - 1
             is_complete = (member.start_known and member.end_known) or is_between_gaps
+            if not is_complete:
+                length -= MERGED_LENGTH
             if length < MAX_CAR:
                 ratio += length_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
                 one = length_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
-                two = length_log_likelihood(length, True, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
+                two = length_log_likelihood(length, is_complete, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
                 ratio -= max(one, two)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * DECIDED
@@ -241,7 +239,7 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
 
 def merging_penalty(member: RowMember) -> float:
     """Return minus the log of the probability that two cars side by side are measured as one, as far off as a side."""
-    return MERGING_PENALTY if member.front > RESOLVED_FRONT else 2.0 * DECIDED
+    return MERGING_PENALTY if member.front > RESOLVED_FRONT else DECIDED
 
 
 def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
@@ -255,26 +253,6 @@ def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: 
 def is_too_short_for_car(length: float) -> bool:
     """Return whether a side of ``length`` [m], 0 if unknown, is shorter than any car is wide: of a pillar or a post."""
     return 0.0 < length < CAR_WIDTH - 3.0 * CAR_WIDTH_SIGMA
-
-
-def bay_width(row: SlotRow) -> float:
-    """Return the mean distance [m] of neighbouring cars, from middle to middle, as far as bays are that narrow.
-
-    A car that is still being passed has no middle yet; pillars stand between bays.
-    """
-    total = 0.0
-    n = 0.0
-    for number in range(MEMBERS - 1):
-        if number + 1 < row.used:
-            one = row.members[number]
-            other = row.members[number + 1]
-            distance = 0.5 * (one.start + one.end - other.start - other.end)
-            is_complete = one.start_known and one.end_known and other.start_known and other.end_known
-            is_pillar = is_too_short_for_car(one.end - one.start) or is_too_short_for_car(other.end - other.start)
-            if distance < MAX_BAY and is_complete and not is_pillar:
-                total += distance
-                n += 1.0
-    return total / n if n > 0.0 else 0.0
 
 
 def gap_depth(

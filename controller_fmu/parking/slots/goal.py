@@ -7,35 +7,41 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.slots.candidate import (
     BAY_WIDTH,
     CAR_WIDTH,
+    CAR_WIDTH_SIGMA,
     SlotCandidate,
     SlotType,
     into_heading,
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
+from controller_fmu.parking.slots.row import UNEVEN
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
-OFF_CENTRE = 0.3
-"""A gap may be narrower than its empty bays by this [m]: cars stand up to 0.15 m beside the middle of theirs."""
+MIN_BAY = 2.35
+"""Two narrower bays [m] may be a single wide gap: the narrowest are 2.3 m wide, ends of sides err by 0.1 m."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
-    """Return the pose of the rear-axle midpoint to park at."""
+    """Return the pose of the rear-axle midpoint to park at.
+
+    Where one neighbour stands out more than cars do, as its bicycle rack may, it is flush with the other one.
+    """
     middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
     if candidate.type == SlotType.PARALLEL:
-        width = 2.0 * outline.half_width
-        left = candidate.depth - width
-        shift = 0.0
-        if left < params.kerb_min:
-            shift = left - params.kerb_min
-        elif left > params.kerb_max and left < params.kerb_max + params.stand_out:
-            shift = min(left - params.kerb_max, max(most_overhang(candidate, outline, params), 0.0))
+        left = candidate.depth - 2.0 * outline.half_width
+        unsure = params.confidence * candidate.depth_sigma
+        shift = min(left - params.kerb_min - unsure, 0.0)
+        if params.kerb_max < left + unsure and left < params.kerb_max + params.stand_out:
+            shift = min(left + unsure - params.kerb_max, max(most_overhang(candidate, outline, params), 0.0))
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
-        deep = candidate.front + outline.half_length + min(0.0, room)
+        by_slope = candidate.slope * candidate.row.side * (candidate.ahead.start - candidate.behind.end)
+        uneven = abs(candidate.ahead.start_front - candidate.behind.end_front - by_slope)
+        inward = min(0.5 * uneven, params.stand_out) if uneven > params.confidence * math.sqrt(2.0) * UNEVEN else 0.0
+        deep = candidate.front + outline.half_length + min(inward, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)
     centre = row_point(candidate.row, middle, deep)
@@ -73,11 +79,16 @@ def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -
 def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
-    A row that shows no repetition has bays of the usual width. A gap of n bays is at least n times the width of a bay,
-    and once more the spare width beside a car in its bay.
+    The middles of the cars beside n empty bays are n + 1 bays apart: 4.6 to 5.8, 6.9 to 8.7 or 9.2 to 11.6 m where bays
+    are 2.3 to 2.9 m wide, so n follows from the mean width.
     """
-    bay = candidate.bay if candidate.bay > 0.0 else BAY_WIDTH
-    width = candidate.ahead.start - candidate.behind.end
-    spare = max(bay - CAR_WIDTH, 0.0)
-    bays = max(1.0, float(math.floor((width - spare + OFF_CENTRE) / bay)))
-    return candidate.ahead.start - 0.5 * spare - 0.5 * (width - spare) / bays
+    ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead.start_length)
+    behind = candidate.behind.end - 0.5 * _car_width(candidate.behind.end_length)
+    if ahead - behind < 3.0 * MIN_BAY:
+        return 0.5 * (candidate.behind.end + candidate.ahead.start)
+    return ahead - (ahead - behind) / math.floor((ahead - behind) / BAY_WIDTH + 0.5)
+
+
+def _car_width(side_length: float) -> float:
+    """Return the width [m] of a car across the road of which a side was measured; the usual one if that is no front."""
+    return side_length if abs(side_length - CAR_WIDTH) < 3.0 * CAR_WIDTH_SIGMA else CAR_WIDTH

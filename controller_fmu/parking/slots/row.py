@@ -202,6 +202,7 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     turn = 0.0
     of_cars = 0.0
     turn_of_cars = 0.0
+    variance = 0.0
     for number in range(LANDMARKS):
         landmark = landmarks[number]
         member = side_as_member(landmark, row.frame, row.side, params)
@@ -213,6 +214,7 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
             if member.front < deepest:
                 of_cars += weight
                 turn_of_cars += weighted
+                variance += weight * weight * landmark.hh
     if of_cars <= 0.0:
         return RowDirection(0.0, MAX_TILT)
     by_cars = turn_of_cars / of_cars
@@ -222,7 +224,8 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
         weight = 1.0 / (line.sigma * line.sigma)
         turn += weight * line.turn
         total += weight
-    return RowDirection(0.5 * (turn / total + by_cars), 0.5 / math.sqrt(total))
+    sigma = 0.5 * math.sqrt(1.0 / total + variance / (of_cars * of_cars))
+    return RowDirection(0.5 * (turn / total + by_cars), sigma)
 
 
 def _line_direction(row: SlotRow) -> RowDirection:

@@ -284,20 +284,42 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
     depth = slot.depth
     if slot.depth < UNKNOWN_DEPTH:
         depth = state[END_INDEX] - (middle.x * slot_filter.into_x + middle.y * slot_filter.into_y)
-    deep = outline.half_length if slot.type == SlotType.PERPENDICULAR else 0.0
-    behind = a.x - deep * slot.row.side * math.sin(state[2] - frame.heading)
-    ahead = b.x - deep * slot.row.side * math.sin(state[AHEAD_OFFSET + 2] - frame.heading)
-    covariance = slot_filter.covariance
-    behind_sigma = _sigma_along(covariance, 0, heading)
-    ahead_sigma = _sigma_along(covariance, AHEAD_OFFSET, heading)
-    return slot._replace(
-        row=slot.row._replace(frame=frame),
-        behind=slot.behind._replace(end=behind, end_front=behind_front, end_sigma=behind_sigma),
-        ahead=slot.ahead._replace(start=ahead, start_front=ahead_front, start_sigma=ahead_sigma),
+    deep = slot.row.side * outline.half_length if slot.type == SlotType.PERPENDICULAR else 0.0
+    behind = a.x - deep * math.sin(state[2] - frame.heading)
+    ahead = b.x - deep * math.sin(state[AHEAD_OFFSET + 2] - frame.heading)
+    known = _with_sigmas(slot, slot_filter.covariance, deep)
+    return known._replace(
+        row=known.row._replace(frame=frame),
+        behind=known.behind._replace(end=behind, end_front=behind_front),
+        ahead=known.ahead._replace(start=ahead, start_front=ahead_front),
         front=front,
         depth=depth,
-        front_sigma=_middle_sigma(covariance, heading + 0.5 * math.pi),
-        middle_sigma=_middle_sigma(covariance, heading),
+    )
+
+
+def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float) -> SlotCandidate:
+    """Return the slot with its standard deviations, the middle's ``deep`` [m] behind the corners, by its side's sign.
+
+    All echoes share the errors of the sensors' mounting and of the surfaces, however many there are.
+    """
+    heading = slot.row.frame.heading
+    half_cos = 0.5 * math.cos(heading)
+    half_sin = 0.5 * math.sin(heading)
+    across = Pose(-half_sin, half_cos, 0.0)
+    along = Pose(half_cos, half_sin, -0.5 * deep)
+    shared = FRONT_SIGMA * FRONT_SIGMA
+    share = _behind_share(slot)
+    turned = _sum_variance(covariance, Pose(0.0, 0.0, share), Pose(0.0, 0.0, 1.0 - share))
+    row_sigma = slot.row.heading_sigma
+    is_ended = slot.depth < UNKNOWN_DEPTH
+    end_sigma = math.sqrt(covariance[END_INDEX * STATE_COUNT + END_INDEX])
+    return slot._replace(
+        row=slot.row._replace(heading_sigma=math.sqrt(row_sigma * row_sigma + turned)),
+        behind=slot.behind._replace(end_sigma=_sigma_along(covariance, 0, heading)),
+        ahead=slot.ahead._replace(start_sigma=_sigma_along(covariance, AHEAD_OFFSET, heading)),
+        depth_sigma=end_sigma if is_ended else slot.depth_sigma,
+        front_sigma=math.sqrt(_sum_variance(covariance, across, across) + shared),
+        middle_sigma=math.sqrt(_sum_variance(covariance, along, along) + shared),
     )
 
 
@@ -310,21 +332,23 @@ def _row_turn(slot: SlotCandidate, state: tuple[float, ...]) -> float:
     b = slot.ahead
     behind = wrap_angle(state[2] - _front_heading(slot.row, a, a.end_length))
     ahead = wrap_angle(state[AHEAD_OFFSET + 2] - _front_heading(slot.row, b, b.start_length))
-    behind_weight = 1.0 / _heading_variance(a, a.end_length)
-    ahead_weight = 1.0 / _heading_variance(b, b.start_length)
-    return (behind_weight * behind + ahead_weight * ahead) / (behind_weight + ahead_weight)
+    share = _behind_share(slot)
+    return share * behind + (1.0 - share) * ahead
 
 
-def _middle_sigma(covariance: tuple[float, ...], direction: float) -> float:
-    """Return the standard deviation [m] of the middle between both corners in a ``direction`` [rad]."""
-    axis = (math.cos(direction), math.sin(direction))
+def _behind_share(slot: SlotCandidate) -> float:
+    """Return the weight of the neighbour behind in the mean of both headings."""
+    behind = 1.0 / _heading_variance(slot.behind, slot.behind.end_length)
+    return behind / (behind + 1.0 / _heading_variance(slot.ahead, slot.ahead.start_length))
+
+
+def _sum_variance(covariance: tuple[float, ...], behind: Pose, ahead: Pose) -> float:
+    """Return the variance of a sum of both neighbours' states, with what each counts in it."""
+    weights = (behind.x, behind.y, behind.heading, ahead.x, ahead.y, ahead.heading, 0.0)
     total = 0.0
-    for row in range(4):
-        for column in range(4):
-            at = AHEAD_OFFSET * (row // 2) + row % 2
-            other = AHEAD_OFFSET * (column // 2) + column % 2
-            total += axis[row % 2] * axis[column % 2] * covariance[at * STATE_COUNT + other]
-    return 0.5 * math.sqrt(max(total, 0.0))
+    for row in range(END_INDEX):
+        total += weights[row] * _row_product(covariance, weights, row)
+    return max(total, 0.0)
 
 
 def _sigma_along(covariance: tuple[float, ...], at: int, heading: float) -> float:

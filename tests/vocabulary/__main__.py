@@ -16,6 +16,8 @@ BASE = "3b7160b1"
 """Subjects of commits after this one are checked."""
 LANDED = frozenset(
     {
+        "docs: state what the parking system does in the studies of slots at all angles",
+        "mutants: name mistakes in the parking system and the tests that find them",
         "ci: install with uv, build an FMU of the same content once, recipes compile once",
         "parking: map oblique sides where the cone's boundary meets them, find their rows",
         "studies: take slot types and shortest slots from the standards, not a system",

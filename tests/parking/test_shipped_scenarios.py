@@ -26,7 +26,7 @@ OTHERWISE = frozenset(
     }
 )
 """Those that do not end as they are meant to: they need what the system does not have yet, or go wrong."""
-ENDS_DIFFERENTLY = {"apa-external-slot-nose-in": "parked", "apa-parallel-deep": "parked"}
+ENDS_DIFFERENTLY = {"apa-external-slot-nose-in": "parked"}
 """What the system can do and `apa` cannot."""
 SAME = {"apa.drive.longitudinal": "drive.longitudinal", "apa.search.wish": "slot.wanted"}
 """Parameters of `apa` that this system has at another place."""

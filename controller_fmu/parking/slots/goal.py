@@ -7,7 +7,6 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.slots.candidate import (
     BAY_WIDTH,
     CAR_WIDTH,
-    CAR_WIDTH_SIGMA,
     SlotCandidate,
     SlotType,
     into_heading,
@@ -38,8 +37,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
-        by_slope = candidate.slope * candidate.row.side * (candidate.ahead.start - candidate.behind.end)
-        uneven = abs(candidate.ahead.start_front - candidate.behind.end_front - by_slope)
+        uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.slope == 0.0 else 0.0
         inward = min(0.5 * uneven, params.stand_out) if uneven > params.confidence * math.sqrt(2.0) * UNEVEN else 0.0
         deep = candidate.front + outline.half_length + min(inward, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
@@ -80,15 +78,10 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
     The middles of the cars beside n empty bays are n + 1 bays apart: 4.6 to 5.8, 6.9 to 8.7 or 9.2 to 11.6 m where bays
-    are 2.3 to 2.9 m wide, so n follows from the mean width.
+    are 2.3 to 2.9 m wide, so n follows from the mean width. Cars are as wide as usual within 0.1 m, sides as measured
+    within 0.4 m.
     """
-    ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead.start_length)
-    behind = candidate.behind.end - 0.5 * _car_width(candidate.behind.end_length)
-    if ahead - behind < 3.0 * MIN_BAY:
+    distance = candidate.ahead.start - candidate.behind.end + CAR_WIDTH
+    if distance < 3.0 * MIN_BAY:
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
-    return ahead - (ahead - behind) / math.floor((ahead - behind) / BAY_WIDTH + 0.5)
-
-
-def _car_width(side_length: float) -> float:
-    """Return the width [m] of a car across the road of which a side was measured; the usual one if that is no front."""
-    return side_length if abs(side_length - CAR_WIDTH) < 3.0 * CAR_WIDTH_SIGMA else CAR_WIDTH
+    return candidate.ahead.start + 0.5 * CAR_WIDTH - distance / math.floor(distance / BAY_WIDTH + 0.5)

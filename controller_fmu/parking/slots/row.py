@@ -31,8 +31,8 @@ ROW_DEPTH = 1.0
 """Sides whose fronts differ by less than this [m] are of one row; a kerb or wall lies deeper."""
 MEMBER_GAP = 0.35
 """Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
-ASKEW_VARIANCE = 0.0012
-"""Of the misalignment of cars in a row, standard deviation 2 deg [rad2]."""
+ASKEW_VARIANCE = 0.0025
+"""Of the misalignment of cars in a row, by up to 5 deg either way [rad2]."""
 UNEVEN = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9

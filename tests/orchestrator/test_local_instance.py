@@ -1,5 +1,6 @@
 """Runs with FMUs: the same bits as in process, errors reported, nothing left behind."""
 
+import shutil
 import tempfile
 import zipfile
 from pathlib import Path
@@ -13,6 +14,7 @@ from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.text.errors import BadInput, RunError
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.local_instance import LocalInstance
+from orchestrator.simulation.cosim.model_description import ports_of, read_description
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 
@@ -49,6 +51,18 @@ def test_nothing_is_left_behind(files: dict[str, Path], tmp_path: Path, monkeypa
     with pytest.raises(BadInput):
         run_scenario(bad, files, kind="python")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_description_is_read_once_until_its_file_changes(files: dict[str, Path], tmp_path: Path) -> None:
+    path = tmp_path / "model.fmu"
+    shutil.copy(files["vehicle"], path)
+    first = read_description(path)
+    assert read_description(path) is first
+    ports = ports_of(first, "input", None, path)
+    ports.add_told(ports.variables[0]._replace(name="more"))
+    assert ports_of(first, "input", None, path).names == ports.names[:-1]
+    shutil.copy(files["controller"], path)
+    assert read_description(path).modelName != first.modelName
 
 
 def test_sources_and_documentation_are_not_extracted(files: dict[str, Path]) -> None:

@@ -1,6 +1,7 @@
 """The channels of an instance's signals: some written at each exchange, some when a value changes."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,5 +142,12 @@ def message_name(instance: str, place: str) -> str:
 
 def add_channel(file: Sink, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
     """Return a new channel whose schema is made from ``variables``."""
-    descriptors = descriptor_set(file_descriptor(message, variables, notes))
-    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
+    descriptors, text = _describe(message, tuple(variables), tuple(notes))
+    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: text})
+
+
+@lru_cache(maxsize=64)
+def _describe(message: str, variables: tuple[Variable, ...], notes: tuple[str, ...]) -> tuple[bytes, str]:
+    """Return the types of a message, serialized, and the description of its variables: the same in each run."""
+    described = list(variables), list(notes)
+    return descriptor_set(file_descriptor(message, *described)), to_json(*described)

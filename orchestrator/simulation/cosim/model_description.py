@@ -5,6 +5,7 @@ import re
 import zipfile
 from collections import Counter
 from enum import IntEnum
+from functools import lru_cache
 from pathlib import Path
 
 from fmpy.model_description import ModelDescription, ModelVariable, read_model_description
@@ -32,11 +33,26 @@ DESCRIPTION = "modelDescription.xml"
 PARAMETERS = ("parameter", "calculatedParameter")
 NOT_SAID = "illegal combination of causality"
 """How FMPy refuses a variable whose variability does not fit; FMI 2.0 has all vary of which nothing is said."""
+MAX_CACHED = 16
+"""Descriptions of FMUs that are kept."""
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def read_description(path: Path) -> ModelDescription:
-    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 or 3.0 co-simulation FMU."""
+    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 or 3.0 co-simulation FMU.
+
+    An unchanged file is read once in a process: nobody may change what is returned.
+    """
+    try:
+        state = path.stat()
+        stamp = state.st_ino, state.st_size, state.st_mtime_ns
+    except OSError:
+        stamp = None
+    return _read_description(path, stamp)
+
+
+@lru_cache(maxsize=MAX_CACHED)
+def _read_description(path: Path, _stamp: tuple[int, int, int] | None) -> ModelDescription:
     try:
         try:
             description = read_model_description(str(path), validate=False)
@@ -84,6 +100,19 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
 
     Raises ``BadInput`` if a start value has no meaning.
     """
+    found, unsaid = _variables_with(description, causality, model, path)
+    ports = Ports(list(found), unsaid, _scales(description))
+    ports.unsupported = variables_of_other_types(description, causality)
+    if causality == "output":
+        ports.direct = dependencies(description)
+    return ports
+
+
+@lru_cache(maxsize=4 * MAX_CACHED)
+def _variables_with(
+    description: ModelDescription, causality: str, model: Model | None, path: Path
+) -> tuple[tuple[Variable, ...], frozenset[str]]:
+    """Return the variables of one causality, and the names of those whose unit is not said."""
     known = {} if model is None else _variables_of(model)
     place = {name: number for number, name in enumerate(known)}
     chosen = [
@@ -92,15 +121,11 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
         if item.type in KINDS and (item.causality == causality or (_is_seen(item, known) and causality == "output"))
     ]
     chosen.sort(key=lambda item: place.get(item.name, len(place)))
-    found = [element for item in chosen for element in _elements(item, known.get(item.name), path)]
+    found = tuple(element for item in chosen for element in _elements(item, known.get(item.name), path))
     unsaid = frozenset(
         name for item in chosen if KINDS[item.type] is float and _unit(item) is None for name in element_names(item)
     )
-    ports = Ports(found, unsaid, _scales(description))
-    ports.unsupported = variables_of_other_types(description, causality)
-    if causality == "output":
-        ports.direct = dependencies(description)
-    return ports
+    return found, unsaid
 
 
 def has_variable_step(description: ModelDescription) -> bool:

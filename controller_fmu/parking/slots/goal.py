@@ -17,8 +17,8 @@ from controller_fmu.parking.slots.row import UNEVEN
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
-MIN_BAY = 2.35
-"""Two narrower bays [m] may be a single wide gap: the narrowest are 2.3 m wide, ends of sides err by 0.1 m."""
+MIN_BAY = 2.4
+"""Two narrower bays [m] may be a single wide gap: ends of sides err by 0.1 m, widths by 0.2 m."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:

@@ -127,11 +127,11 @@ def squared_errors(runs: int) -> tuple[list[float], list[float]]:
     return offsets, headings
 
 
-@pytest.mark.slow
-def test_estimates_are_as_good_as_their_covariance_says() -> None:
+@pytest.mark.parametrize("passes", [8, pytest.param(40, marks=pytest.mark.release)])
+def test_estimates_are_as_good_as_their_covariance_says(passes: int) -> None:
     """Mean normalised squared error: 1 if the covariance is right; the offset is stated too wide rather than too
     narrow, since the odometry model allows for more drift than these passes have."""
-    offsets, headings = squared_errors(40)
+    offsets, headings = squared_errors(passes)
     band = 1.96 * math.sqrt(2.0 / len(headings))
     assert np.mean(headings) < 1.0 + band
     assert 0.2 < np.mean(offsets) < 1.0 + band

@@ -87,7 +87,7 @@ def outputs(model: Any, scenario: Any, samples: int) -> Any:
 
 
 @NATIVE
-@pytest.mark.slow
+@pytest.mark.release
 def test_a_small_scene_has_the_bits_of_the_small_map(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(yaml.safe_dump(read_parkbench(write(tmp_path / "a.json", scene()))))
     scenario = load_scenario(str(tmp_path / "a.yaml"))

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from benchmarks.paired import Pair, is_lost, report
-from benchmarks.sensitivity import ROOT, constants_of, scaled
+from benchmarks.sensitivity import COLUMNS, SCALES, lines_in, without_effect
+from benchmarks.tuning_constants import ARRAY, ROOT, can_vary, constants_of, marked, scaled, with_array
 
 CODE = '''from enum import IntEnum
 from typing import Annotated, NamedTuple
@@ -59,6 +60,8 @@ def test_constants_are_numbers_that_tune(tmp_path: Path) -> None:
     (tmp_path / "code.py").write_text(CODE)
     found = constants_of(tmp_path, tmp_path)
     assert sorted(item.value for item in found) == [0.1, 0.35, 1.7, 2.5, 7]
+    names = {item.value: item.name for item in found}
+    assert names == {0.35: "LIMIT", 0.1: "PAIRS[1]", 7: "PAIRS[2]", 2.5: "Params.gain", 1.7: "f 1.7"}
     for item in found:
         changed = scaled(CODE, item, 1.4)
         ast.parse(changed)
@@ -67,7 +70,36 @@ def test_constants_are_numbers_that_tune(tmp_path: Path) -> None:
     assert "= 1.75" in scaled(CODE, gain, 0.7)
 
 
+def test_the_marks_of_real_constants_become_items_of_an_array(tmp_path: Path) -> None:
+    (tmp_path / "code.py").write_text(CODE)
+    found = constants_of(tmp_path, tmp_path)
+    variable = [(number, item) for number, item in enumerate(found) if can_vary(item)]
+    assert {item.name for _, item in variable} == {"LIMIT", "f 1.7"}
+    text = marked(CODE, variable)
+    marks = [line.split()[-1] for line in text.splitlines() if line.startswith("LIMIT")]
+    code = f"static const double LIMIT = {marks[0]};\nstatic const double TABLE[1] = {{{marks[0]}}};\nx = {marks[0]};\n"
+    changed, places = with_array(code, found)
+    limit = next(number for number, item in variable if item.name == "LIMIT")
+    assert places == [limit]
+    assert f"#define LIMIT ({ARRAY}[{limit}])" in changed
+    assert "TABLE[1] = {0.35}" in changed, "a table is initialised by constants alone"
+    assert f"x = ({ARRAY}[{limit}]);" in changed
+
+
 def test_every_constant_of_a_package_can_be_scaled() -> None:
-    folder = ROOT / "controller_fmu" / "planning"
+    folder = ROOT / "controller_fmu" / "parking" / "planning"
     for item in constants_of(folder):
         ast.parse(scaled((ROOT / item.file).read_text(), item, 0.7))
+
+
+def test_the_measured_constants_have_a_line_for_each_scale(tmp_path: Path) -> None:
+    file = ROOT / "benchmarks" / "sensitivity.tsv"
+    lines = lines_in(file)
+    assert len({tuple(line[:4]) for line in lines}) == len(lines)
+    assert {len(line) for line in lines} == {len(COLUMNS)}
+    for scale in SCALES:
+        assert len([line for line in lines if line[3] == f"{scale:g}"]) * len(SCALES) == len(lines)
+    assert all(int(line[5]) >= int(line[6]) >= 0 for line in lines), "another outcome is another row"
+    few = tmp_path / "few.tsv"
+    few.write_text("\n".join(["\t".join(COLUMNS), "a\tX\t1\t0.7\t2\t0\t0\t0\t0", "a\tX\t1\t1.4\t2\t1\t0\t0\t0"]))
+    assert without_effect(few) == set(), "one scale is enough"

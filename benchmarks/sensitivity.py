@@ -1,6 +1,6 @@
 """Scale each tuning constant of a package by 0.7 and 1.4 and write what a study makes of it.
 
-    python -m benchmarks.sensitivity controller_fmu/parking --study apa-world --set system=8 --runs 40 --out FILE.tsv
+    python -m benchmarks.sensitivity controller_fmu/parking --study apa-world --runs 40 --out FILE.tsv
 
 A line of the table: file, constant, value, scale, rows, rows of which any number differs, rows with another outcome,
 change in parked rows, rows lost. ``--resume`` continues a table; ``--same-in FILE.tsv`` takes only constants of which

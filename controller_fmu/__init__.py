@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 from controller_fmu.registry import APART, MODEL, SYSTEM_MODELS, SYSTEMS, System
 
 if TYPE_CHECKING:
-    from controller_fmu.parking.standalone import MODEL as PARKING
+    from controller_fmu.parking.standalone import MODEL as APA
     from controller_fmu.policy.standalone import MODEL as POLICY
 
-__all__ = ["APART", "MODEL", "PARKING", "POLICY", "SYSTEMS", "SYSTEM_MODELS", "System"]
+__all__ = ["APA", "APART", "MODEL", "POLICY", "SYSTEMS", "SYSTEM_MODELS", "System"]
 
 globals().update({choice.name: model for choice, model in SYSTEM_MODELS.items()})
 # A Python FMU of one system finds its model under this name.

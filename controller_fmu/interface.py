@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple, Protocol
 
 from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.common.phases import CommonPhase
-from modelkit.car import Car, CarSteering, CarUltrasonic
+from modelkit.car import Car, CarSteering
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     ANYWHERE,
@@ -156,12 +156,6 @@ class OutlinedCar(SteeredCar, Protocol):
     front_overhang: float
     rear_overhang: float
     width: float
-
-
-class SensingCar(OutlinedCar, Protocol):
-    """What steers, the outline, and the distance sensors."""
-
-    ultrasonic: CarUltrasonic
 
 
 class HasCar(Protocol):

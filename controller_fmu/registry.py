@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
 
 from controller_fmu import (
     adaptive,
-    apa,
     guo2015,
     hsic,
     preview,
@@ -33,7 +32,6 @@ ROWS: tuple[SampledSystem[Any, Any, Any, Any], ...] = (
     zhang2022.SYSTEM,
     hsic.SYSTEM,
     preview.SYSTEM,
-    apa.SYSTEM,
     adaptive.SYSTEM,
 )
 """The systems of one controller, which choose by ``controller.system``."""
@@ -75,9 +73,9 @@ def _policy() -> Model:
 
 APART = StandaloneModels(
     {
-        ParkingSystem.PARKING: _parking,
+        ParkingSystem.APA: _parking,
         PolicySystem.POLICY: _policy,
-        ParkingSystem.PARKING_LARGE: _parking_large,
+        ParkingSystem.APA_LARGE: _parking_large,
     }
 )
 """Those that are a controller of their own, with work arrays or a map: by their value of ``controller.system``."""

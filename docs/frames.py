@@ -1,8 +1,8 @@
 """Hook of mkdocs: the page that is driven stands in a page of the site, with the sliders that matter there.
 
 A page has a mark ``<!-- live: SCENARIO PARAMETER... -->``. What is loaded when it is scrolled to is
-``reference/live.html``, which ``generate.py`` writes where a compiler is; for ``<!-- live parking: ...`` it is
-``reference/live-parking.html``, the page of a controller apart.
+``reference/live.html``, which ``generate.py`` writes where a compiler is; for ``<!-- live apa: ...`` it is
+``reference/live-apa.html``, the page of a controller apart.
 """
 
 import re

@@ -14,7 +14,7 @@ from fmus.contents.variables import FmiVariable, visible_variables
 from fmus.native.fmu import PAGE, build
 from modelkit.model import Model
 
-LARGE: tuple[Model, ...] = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.PARKING)
+LARGE: tuple[Model, ...] = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.APA)
 MODELS = (*LARGE, *controller_fmu.SYSTEM_MODELS.values())
 PLATFORM = "linux64"
 FRAME = re.compile(r"largest stack frame .* has (\d+) bytes")

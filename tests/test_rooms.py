@@ -226,14 +226,11 @@ def test_functions_are_short_and_few_take_many_parameters() -> None:
 
 ONE_MEANING = {
     "Box": "a rectangle in the plane: of the scene, of the judge, of the outline",
-    "EndParams": "when a system counts the car as parked",
     "StopCondition": "what ends a run before its stop time: in Python, in the batch in C",
     "Guard": "the conditions of a chart, one bit each",
     "Kerb": "a straight kerb: of the scene, of the judge",
-    "Piece": "a line, an arc or a clothoid of a path",
     "Plan": "what a planner gives, with what it was made for",
     "Reference": "the point of the path that the car should be at",
-    "Slot": "a slot: as it is, as it was found",
 }
 """Classes of one name in several rooms that do not import each other, and what the name means in all of them."""
 

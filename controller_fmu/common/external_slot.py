@@ -15,8 +15,6 @@ WELL_IN = 0.25
 """An echo so far [m] inside a slot contradicts it."""
 AT_THE_ROAD = 0.15
 """Slots begin so far [m] before their corners A and B."""
-MIN_CONTRADICTING_ECHOES = 2
-"""So many echoes contradict a slot; and tell a neighbour."""
 
 
 class SlotKind(IntEnum):

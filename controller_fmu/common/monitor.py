@@ -84,16 +84,6 @@ def time_counted(dt_ns: int, speed: float, standstill: float, begun: bool = True
     return dt_ns
 
 
-def clock_before(obstacle: bool, clock: int, still: bool, dt_ns: int) -> int:
-    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
-
-    A reading now and then that says otherwise does not begin it anew.
-    """
-    if still:
-        return clock + dt_ns if obstacle else clock
-    return clock - dt_ns if clock > dt_ns else 0
-
-
 def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
     """Return whether the pose has moved by less than a tenth of ``speed`` [m/s] times the sample."""
     dx = pose.x - before.x

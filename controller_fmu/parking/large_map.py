@@ -1,6 +1,6 @@
 """The parking system for maps of many vertices: the same code with a longer map and longer columns of edges.
 
-A controller of its own beside ``parking``, whose FMU has neither the variables nor the memory of this map.
+A controller of its own beside ``apa``, whose FMU has neither the variables nor the memory of this map.
 """
 
 import sys
@@ -10,7 +10,7 @@ from typing import Annotated, Any, NamedTuple
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, Vertex
 from controller_fmu.parking.params import ParkingParams, ParkingSystem
 from controller_fmu.parking.planning.work import PlanningWork
-from controller_fmu.parking.standalone import MODEL as PARKING
+from controller_fmu.parking.standalone import MODEL as APA
 from modelkit.composition import fields_of, make_named_tuple
 from modelkit.model import Model, Variant
 from modelkit.store import Column
@@ -46,16 +46,14 @@ def _large_work() -> Any:
     return made
 
 
-LargeParkingParams = _with_defaults(
-    ParkingParams, system=ParkingSystem.PARKING_LARGE, map=(Vertex(),) * LARGE_MAP_VERTICES
-)
+LargeParkingParams = _with_defaults(ParkingParams, system=ParkingSystem.APA_LARGE, map=(Vertex(),) * LARGE_MAP_VERTICES)
 LargePlanningWork = _large_work()
-MODEL: Model[Any, Any, Any, Any] = PARKING._replace(
-    name="Controller_parking_large",
+MODEL: Model[Any, Any, Any, Any] = APA._replace(
+    name="Controller_apa_large",
     description=f"Parking with maps of up to {LARGE_MAP_VERTICES} vertices",
     package=sys.modules[__package__.rpartition(".")[0]],
     params=LargeParkingParams,
     store=LargePlanningWork,
-    view=Variant((("system", int(ParkingSystem.PARKING_LARGE)),), frozenset({"system"})),
+    view=Variant((("system", int(ParkingSystem.APA_LARGE)),), frozenset({"system"})),
     substitutes=((ParkingParams, LargeParkingParams), (PlanningWork, LargePlanningWork)),
 )

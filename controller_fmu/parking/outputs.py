@@ -65,7 +65,7 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
         reference=memory.progress.reference,
         lateral_error=memory.progress.lateral_error,
         heading_error=memory.progress.heading_error,
-        parking=_signals(memory, params),
+        apa=_signals(memory, params),
     )
 
 

@@ -51,16 +51,16 @@ class FinalPoseParams(NamedTuple):
 class ParkingSystem(IntEnum):
     """Its value of ``controller.system``."""
 
-    PARKING = 8
+    APA = 5
     """Slots in a map of landmarks, a path into one, a collision monitor; a controller of its own."""
-    PARKING_LARGE = 10
+    APA_LARGE = 10
     """The same with a map of 2,048 vertices, of 360 otherwise; a controller of its own."""
 
 
 class ParkingParams(NamedTuple):
     """All of them; those that other systems have too have the same names."""
 
-    system: Annotated[int, Signal("1", "which system", states=ParkingSystem)] = ParkingSystem.PARKING
+    system: Annotated[int, Signal("1", "which system", states=ParkingSystem)] = ParkingSystem.APA
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
     target: Annotated[Pose, Group("pose to park at where no slot is searched", ANYWHERE), Role.TUNABLE] = Pose()

@@ -53,7 +53,7 @@ class ParkingSystemInput(NamedTuple):
 
 
 class ParkingAlarm(IntEnum):
-    """Warnings on the display; the numbers are those of `apa`."""
+    """Warnings on the display."""
 
     NONE = 0
     SLOW_DOWN = 1
@@ -92,22 +92,24 @@ class ParkingSignals(NamedTuple):
     """Search, plan and drive."""
 
     state: Annotated[int, Signal("1", "state of the chart", states=ParkingState)] = ParkingState.STANDBY
-    landmarks: Annotated[int, Signal("1", "confirmed landmarks of the map", 0)] = 0
-    steps: Annotated[int, Signal("1", "steps of the path search so far", 0)] = 0
-    plans: Annotated[int, Signal("1", "plans begun so far", 0)] = 0
-    margin: Annotated[float, Signal("m", "clearance that the path keeps", 0.0)] = 0.0
-    segments: Annotated[int, Signal("1", "segments of the path", 0)] = 0
-    segment: Annotated[int, Signal("1", "the one in hand, from 0", 0)] = 0
-    is_blocked: Annotated[bool, Signal("1", "the collision monitor keeps the vehicle standing")] = False
-    free_distance: Annotated[float, Signal("m", "free along the motion in hand; 100: more than looked at")] = 100.0
-    parking_time: Annotated[float, Signal("s", "since the driver confirmed", 0.0)] = 0.0
-    goal: Annotated[Pose, Group("pose to park at")] = Pose()
-    slot: SlotSignals = SlotSignals()
+    landmarks: Annotated[int, Role.LOCAL, Signal("1", "confirmed landmarks of the map", 0)] = 0
+    steps: Annotated[int, Role.LOCAL, Signal("1", "steps of the path search so far", 0)] = 0
+    plans: Annotated[int, Role.LOCAL, Signal("1", "plans begun so far", 0)] = 0
+    margin: Annotated[float, Role.LOCAL, Signal("m", "clearance that the path keeps", 0.0)] = 0.0
+    segments: Annotated[int, Role.LOCAL, Signal("1", "segments of the path", 0)] = 0
+    segment: Annotated[int, Role.LOCAL, Signal("1", "the one in hand, from 0", 0)] = 0
+    is_blocked: Annotated[bool, Role.LOCAL, Signal("1", "the collision monitor keeps the vehicle standing")] = False
+    free_distance: Annotated[
+        float, Role.LOCAL, Signal("m", "free along the motion in hand; 100: more than looked at")
+    ] = 100.0
+    parking_time: Annotated[float, Role.LOCAL, Signal("s", "since the driver confirmed", 0.0)] = 0.0
+    goal: Annotated[Pose, Role.LOCAL, Group("pose to park at")] = Pose()
+    slot: Annotated[SlotSignals, Role.LOCAL] = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
     alarm: Annotated[int, Signal("1", "warning on the display", states=ParkingAlarm)] = ParkingAlarm.NONE
-    missing: Annotated[float, Signal("m", "length that the last slot refused lacks", 0.0)] = 0.0
+    missing: Annotated[float, Role.LOCAL, Signal("m", "length that the last slot refused lacks", 0.0)] = 0.0
     shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
-    move: DrivenMove = DrivenMove()
+    move: Annotated[DrivenMove, Role.LOCAL] = DrivenMove()
 
 
 class ParkingOutput(NamedTuple):
@@ -132,4 +134,4 @@ class ParkingOutput(NamedTuple):
     heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
         0.0
     )
-    parking: Annotated[ParkingSignals, Role.LOCAL] = ParkingSignals()
+    apa: ParkingSignals = ParkingSignals()

@@ -11,7 +11,7 @@ from modelkit.model import Chart, Model, Variant
 from modelkit.terminals import TERMINALS
 
 MODEL = Model(
-    name="Controller_parking",
+    name="Controller_apa",
     description="Parking: a map of landmarks, slots in it, a path into one, a collision monitor",
     package=sys.modules[__package__.rpartition(".")[0]],
     state=ParkingModelState,
@@ -24,8 +24,8 @@ MODEL = Model(
     stop_time=5.0,
     terminals=TERMINALS,
     sampled=True,
-    view=Variant((("system", int(ParkingSystem.PARKING)),), frozenset({"system"})),
+    view=Variant((("system", int(ParkingSystem.APA)),), frozenset({"system"})),
     store=PlanningWork,
-    charts=(Chart("parking.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
+    charts=(Chart("apa.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
 )
 """A controller of its own until it replaces the other two: the planner's work arrays would weigh on their memory."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
   apa sweep guo2015-trial --set vehicle.body=single_track --json
-  apa sweep apa-grid --stride 20               each 20th run of the parking assist's grid
+  apa sweep apa-grid --stride 20               each 20th run of the parking system's grid
   apa sweep my-study.yaml --resume             continue after Ctrl-C, a kill or a power cut
   apa sweep my-study.yaml --fmus native        the same table from FMUs, slower
   apa sweep my-study.yaml --dask               on a Dask cluster on this machine

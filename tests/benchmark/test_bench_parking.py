@@ -113,5 +113,5 @@ def test_what_cannot_be_benchmarked_is_refused(tmp_path: Path, capsys: pytest.Ca
     (tmp_path / "empty").mkdir()
     assert bench(tmp_path / "empty", "--out", tmp_path / "out") == 2
     assert "no scenario (*.yaml) in this folder" in capsys.readouterr().err
-    with pytest.raises(BadInput, match=r"expected parking or parking_large"):
+    with pytest.raises(BadInput, match=r"expected apa or apa_large"):
         plan_scene(load_scenario("guo2015-case4"))

@@ -30,7 +30,7 @@ def test_poses_and_walls_are_seen_from_the_target(tmp_path: Path) -> None:
     assert content["vehicle"]["start"] == {"x": -5.0, "y": 9.0, "heading": 0.0}
     assert len(content["obstacles"]) == 9
     assert ((-10.0, 13.0), (12.0, 13.0)) in walls(content)
-    assert content["controller"]["system"] == "parking"
+    assert content["controller"]["system"] == "apa"
 
 
 def test_poses_are_relative_to_an_origin_of_their_own(tmp_path: Path) -> None:
@@ -76,12 +76,12 @@ def test_the_vehicle_that_a_scene_states_is_driven(tmp_path: Path) -> None:
 def test_a_scene_of_many_corners_gets_the_large_map(tmp_path: Path) -> None:
     content = read(tmp_path, large_scene())
     assert 360 < 2 * len(content["obstacles"]) < 2048
-    assert content["controller"]["system"] == "parking_large"
+    assert content["controller"]["system"] == "apa_large"
     (tmp_path / "large.yaml").write_text(yaml.safe_dump(content))
     scenario = load_scenario(str(tmp_path / "large.yaml"))
     last = 2 * len(content["obstacles"])
     assert scenario.controller[f"map[{last}].polygon"] == last // 2
-    assert map_corners("parking_large") == 2048
+    assert map_corners("apa_large") == 2048
     with pytest.raises(BadInput, match="the largest map holds 2048"):
         read(tmp_path, large_scene(0.02))
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from controller_fmu import MODEL, PARKING, SYSTEM_MODELS, SYSTEMS
+from controller_fmu import APA, MODEL, SYSTEM_MODELS, SYSTEMS
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.common.phases import CommonPhase, is_over, is_parking
 from controller_fmu.parking.chart import ParkingPhase
@@ -56,9 +56,8 @@ def test_one_system_does_not_name_anothers_phases() -> None:
         ": 0 STANDBY, 1 PRE_STEER, 2 PATH_TRACKING, 8 STRAIGHTEN, 9 PARKED, 10 FAILED, 11 TAKEOVER"
     )
     assert "TO_Q1" in describe(next(item for item in fmi_variables(MODEL) if item.name == "phase"))
-    assert [
-        phase_of(model) for model in (MODEL, SYSTEM_MODELS[System.APA], SYSTEM_MODELS[System.ADAPTIVE], PARKING)
-    ] == [*(Phase, OF_SYSTEMS["apa"], AdaptivePhase, ParkingPhase)]
+    models = (MODEL, SYSTEM_MODELS[System.ADAPTIVE], APA)
+    assert [phase_of(model) for model in models] == [Phase, AdaptivePhase, ParkingPhase]
 
 
 def phase_of(model: Model[Any, Any, Any, Any]) -> type[IntEnum] | None:

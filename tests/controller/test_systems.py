@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from controller_fmu import MODEL, PARKING, SYSTEM_MODELS, SYSTEMS
+from controller_fmu import APA, MODEL, SYSTEM_MODELS, SYSTEMS
 from controller_fmu.common.phases import CommonPhase
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerInput, ControllerParams, System
@@ -15,7 +15,7 @@ from modelkit.vocabulary import Prompt
 
 NAMES = [branch.field for branch in SYSTEMS.systems]
 
-APART = {System.PARKING, System.POLICY, System.PARKING_LARGE}
+APART = {System.APA, System.POLICY, System.APA_LARGE}
 """Controllers of their own."""
 
 
@@ -68,7 +68,7 @@ def test_samples_fall_on_whole_periods_whatever_the_step(steps: Any) -> None:
     assert state.clock.next_sample_ns == 80_000_000
 
 
-@pytest.mark.parametrize("model", [MODEL, PARKING, *SYSTEM_MODELS.values()], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", [MODEL, APA, *SYSTEM_MODELS.values()], ids=lambda model: model.name)
 def test_an_fmu_offers_the_systems_alone_that_act_in_it(model: Any) -> None:
     offered = [item.signal.states for item in visible_variables(model) if item.name == "system"]
     assert len(offered) == (model is MODEL)

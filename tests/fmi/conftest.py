@@ -4,7 +4,7 @@ from typing import Any
 import pytest
 import toy_model
 
-from controller_fmu import APART, PARKING
+from controller_fmu import APA, APART
 from controller_fmu import MODEL as CONTROLLER
 from fmus.native.libraries import python_front
 from fmus.python.fmu import build
@@ -13,7 +13,7 @@ from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
 ALL_MODELS = {**MODELS, **{model.name: model for model in map(APART.__getitem__, APART)}}
-ON_EACH_CHANGE = {*MODELS, PARKING.name}
+ON_EACH_CHANGE = {*MODELS, APA.name}
 """Of the standalone controllers one is enough."""
 
 

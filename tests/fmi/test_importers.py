@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import pytest
 import toy_model
 
+from controller_fmu import APA, SYSTEM_MODELS
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu import SYSTEM_MODELS
 from controller_fmu.registry import System
 from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
@@ -23,9 +23,13 @@ MODELS = (toy_model.MODEL, VEHICLE, CONTROLLER, *SYSTEM_MODELS.values())
 PORTS = [
     *("steering_wheel_request", "steering_active", "prompt", "advised_speed", "speed_control_active", "speed_request"),
     *("force_control_active", "force_request", "brake_request"),
-    *("phase", "reason", "apa.mode", "apa.alarm", "apa.confirm"),
-    *(f"apa.offered[{n}].{name}" for n in (1, 2, 3) for name in ("kind", "side", "a.x", "a.y", "a.heading", "length")),
-    *("apa.shown", "apa.family"),
+    *("phase", "reason"),
+]
+PORTS_OF_PARKING = [
+    *PORTS,
+    "apa.state",
+    *(f"apa.offered[{n}].{name}" for n in (1, 2, 3) for name in ("type", "side", "ax", "ay", "bx", "by", "depth")),
+    *("apa.alarm", "apa.shown"),
 ]
 FROM_OUTSIDE = ("external_slot.", "driver_selection.")
 """Inputs that a driver's display, a camera, a map or a test bench feeds, not the vehicle."""
@@ -40,12 +44,13 @@ def by_name(model: Any) -> Any:
     return {item.name: item for item in fmi_variables(model)}
 
 
-def test_a_block_of_the_controller_has_the_ports_it_needs() -> None:
-    outputs = [item.name for item in fmi_variables(CONTROLLER) if item.causality == "output"]
-    assert outputs == PORTS
+@pytest.mark.parametrize(("model", "ports"), [(CONTROLLER, PORTS), (APA, PORTS_OF_PARKING)])
+def test_a_block_of_the_controller_has_the_ports_it_needs(model: Any, ports: list[str]) -> None:
+    outputs = [item.name for item in fmi_variables(model) if item.causality == "output"]
+    assert outputs == ports
     inputs = {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"}
     assert {name for name in inputs if not name.startswith("manual.")} < set(outputs)
-    wanted = {item.name for item in fmi_variables(CONTROLLER) if item.causality == "input"}
+    wanted = {item.name for item in fmi_variables(model) if item.causality == "input"}
     reported = {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
     assert {name for name in wanted if not name.startswith(FROM_OUTSIDE)} < reported
 
@@ -64,15 +69,15 @@ def test_what_is_calculated_is_output_or_local_and_nothing_is_lost() -> None:
         (CONTROLLER, "lateral_error", "discrete"),
         (CONTROLLER, "phase", "discrete"),
         (CONTROLLER, "odometry.x", "continuous"),
-        (CONTROLLER, "gear", "discrete"),
+        (APA, "gear", "discrete"),
         (CONTROLLER, "guo2015.k1", "tunable"),
         (CONTROLLER, "guo2015.radius", "fixed"),
         (CONTROLLER, "guo2015.threshold.park_lateral", "tunable"),
         (CONTROLLER, "system", "fixed"),
         (CONTROLLER, "car.wheelbase", "fixed"),
         (CONTROLLER, "target.x", "fixed"),
-        (CONTROLLER, "apa.drive.longitudinal", "fixed"),
-        (CONTROLLER, "apa.drive.k1", "tunable"),
+        (APA, "drive.longitudinal", "fixed"),
+        (APA, "drive.k1", "tunable"),
         (VEHICLE, "pose.x", "continuous"),
         (VEHICLE, "ultrasonic[7]", "discrete"),
         (VEHICLE, "contact", "discrete"),
@@ -162,7 +167,7 @@ def test_few_dependencies_take_a_small_part_of_the_description(model: Any, most:
     assert len(structure) < 0.15 * len(content)
 
 
-@pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[System.APA]], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[System.HSIC]], ids=lambda model: model.name)
 def test_what_changes_an_output_at_the_start_is_named(model: Any) -> None:
     """Points and moves of its own, drawn otherwise than by the search."""
     draw = random.Random(99)
@@ -201,7 +206,7 @@ def drawn(draw: Any, item: Any, now: Any) -> Any:
 
 
 def test_the_search_gives_the_same_each_time() -> None:
-    assert find_dependencies(SYSTEM_MODELS[System.APA]) == find_dependencies(SYSTEM_MODELS[System.APA])
+    assert find_dependencies(SYSTEM_MODELS[System.HSIC]) == find_dependencies(SYSTEM_MODELS[System.HSIC])
 
 
 def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing() -> None:

@@ -38,7 +38,7 @@ COMPILERS = [
     pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None, reason="needs gcc")),
     pytest.param(CLANG, id="clang", marks=pytest.mark.release),
 ]
-LARGE_ONCE = [("Controller", 2), ("Controller_parking", 3), ("Controller_parking_large", 2)]
+LARGE_ONCE = [("Controller", 2), ("Controller_apa", 3), ("Controller_apa_large", 2)]
 MODELS_BY_FMI = [
     *(marked(name, fmi) for name in ALL_MODELS for fmi in (2, 3) if name not in dict(LARGE_ONCE)),
     *(pytest.param(*large, marks=pytest.mark.release) for large in LARGE_ONCE),
@@ -47,7 +47,7 @@ MODELS_BY_FMI = [
 DRIVES = [
     ("guo2015-case4",),
     ("valet-parallel",),
-    ("valet-parallel", "controller.system=parking_large"),
+    ("valet-parallel", "controller.system=apa_large"),
 ]
 """Scenarios and overrides whose signals are the inputs of the models in them."""
 needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")

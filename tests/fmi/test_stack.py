@@ -40,7 +40,7 @@ def test_the_page_of_an_fmu_states_its_largest_frame(request: pytest.FixtureRequ
     with zipfile.ZipFile(request.getfixturevalue(kind)[any_model.name]) as archive:
         page = archive.read(PAGE).decode()
     (stated,) = re.findall(r"largest stack frame of its functions, those of a step among them, has (\d+) bytes", page)
-    least = {"Controller": 8_000, "Controller_parking": 8_000}.get(any_model.name, 500)
+    least = {"Controller": 6_000, "Controller_apa": 8_000}.get(any_model.name, 500)
     assert least < int(stated) < BOUND
 
 

@@ -33,15 +33,14 @@ RUNS = {
     System.ZHANG2022: ("zhang2022", 30.0),
     System.HSIC: ("hsic", 40.0),
     System.PREVIEW: ("preview", 12.0),
-    System.APA: ("apa-parallel", 60.0),
     System.ADAPTIVE: ("adaptive", 30.0),
 }
 CHECKED_ONLY = {"system", "target.x", "target.y", "target.heading"}
 """Read by the clock of all systems, which refuses numbers that their ranges refuse already."""
 STEP_NS = 10_000_000
-APA = SYSTEM_MODELS[System.APA]
+HSIC = SYSTEM_MODELS[System.HSIC]
 each = pytest.mark.parametrize("system", SYSTEM_MODELS, ids=lambda system: system.name.lower())
-EACH_CHANGE = (System.APA, System.NTBPTCWPT)
+EACH_CHANGE = (System.HSIC, System.NTBPTCWPT)
 """Systems whose FMUs are run on each change, those of the others by ``make release``: one writer makes all."""
 some = pytest.mark.parametrize(
     "system",
@@ -190,7 +189,7 @@ def test_as_fmi_3_it_has_the_same(system: Any) -> None:
 
 def test_value_references_are_those_of_the_whole_controller() -> None:
     whole = {item.name: item.vr for item in fmi_variables(MODEL)}
-    assert {item.name: item.vr for item in visible_variables(APA)}.items() <= whole.items()
+    assert {item.name: item.vr for item in visible_variables(HSIC)}.items() <= whole.items()
 
 
 @pytest.fixture(scope="module")
@@ -201,8 +200,8 @@ def python_system(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture(scope="module")
-def native_apa() -> Any:
-    return native_fmu_of(APA)
+def native_hsic() -> Any:
+    return native_fmu_of(HSIC)
 
 
 @some
@@ -211,8 +210,8 @@ def test_checkers_find_nothing(python_system: Any, system: Any) -> None:
 
 
 @pytest.mark.release
-def test_checkers_find_nothing_in_a_native_one(native_apa: Any) -> None:
-    check(native_apa)
+def test_checkers_find_nothing_in_a_native_one(native_hsic: Any) -> None:
+    check(native_hsic)
 
 
 def check(path: Any) -> None:
@@ -229,8 +228,8 @@ def test_it_gives_the_bits_of_the_whole_controller(python_system: Any, system: A
 
 
 @pytest.mark.release
-def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa: Any) -> None:
-    twin(native_apa, System.APA)
+def test_a_native_one_gives_the_bits_of_the_whole_controller(native_hsic: Any) -> None:
+    twin(native_hsic, System.HSIC)
 
 
 def twin(path: Any, system: Any) -> None:
@@ -252,11 +251,11 @@ def twin(path: Any, system: Any) -> None:
 
 
 def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_system: Any) -> None:
-    hidden = next(item for item in fmi_variables(APA) if item.name == "guo2015.k1")
-    with Host(python_system(System.APA)) as host:
+    hidden = next(item for item in fmi_variables(HSIC) if item.name == "guo2015.k1")
+    with Host(python_system(System.HSIC)) as host:
         host.fmu.getReal([hidden.vr])
         assert host.log[-1][0] == ERROR
-    with Host(python_system(System.APA)) as host:
+    with Host(python_system(System.HSIC)) as host:
         host.fmu.setReal([hidden.vr], [2.0])
         assert host.log[-1][0] == ERROR
 
@@ -270,5 +269,5 @@ def test_apa_build_makes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 @pytest.mark.release
-def test_a_scenario_passes_with_it(native_apa: Any, tmp_path: Path) -> None:
-    assert main(["test", "apa-parallel", "--controller", str(native_apa), "--out", str(tmp_path)]) == 0
+def test_a_scenario_passes_with_it(native_hsic: Any, tmp_path: Path) -> None:
+    assert main(["test", "hsic", "--controller", str(native_hsic), "--out", str(tmp_path)]) == 0

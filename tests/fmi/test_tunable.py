@@ -19,8 +19,8 @@ from tests.fmi.test_python_fmu import bits
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS: dict[str, Model] = {"vehicle": VEHICLE, "controller": CONTROLLER}
-SCENARIOS = ("guo2015-case4", "guo2015-case1", "zhang2022-double-track", "hsic", "preview", "apa-parallel")
-EACH_CHANGE = ("guo2015-case4", "zhang2022-double-track", "apa-parallel-real")
+SCENARIOS = ("guo2015-case4", "guo2015-case1", "zhang2022-double-track", "hsic", "preview", "adaptive")
+EACH_CHANGE = ("guo2015-case4", "zhang2022-double-track")
 """Scenarios of which each change compares the start; ``make release`` compares all."""
 FIRST_ECHO = ("ultrasonic.noise", "ultrasonic.dropout")
 STEP_NS = 10_000_000
@@ -93,8 +93,6 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
         "limit.",
         "hsic.gain.",
         "zhang2022.pid.",
-        "apa.end.",
-        "apa.guard.",
     ):
         whole = [item.name for item in fmi_variables(CONTROLLER) if item.name.startswith(group)]
         assert whole
@@ -108,8 +106,6 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
         "car.wheelbase",
         "car.ultrasonic",
         "hsic.slot",
-        "apa.sensors",
-        "apa.plan",
     )
     assert not [name for name in names if name.startswith(kept)]
 
@@ -117,10 +113,7 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
 @pytest.mark.parametrize("model", MODELS.values(), ids=list(MODELS))
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release)
-        for name in (*SCENARIOS, "apa-parallel-real")
-    ],
+    [pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release) for name in SCENARIOS],
 )
 def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model: Any, name: Any) -> None:
     """So a value set before the first step and one set before initialization do the same, but for the first echo."""
@@ -187,16 +180,12 @@ def drawn(draw: Any, item: Any) -> Any:
         ("hsic", "controller", "hsic.gain.max_speed", 0.2),
         ("preview", "controller", "preview.set_speed", 3.0),
         ("preview", "controller", "preview.lateral_gain", 10.0),
-        ("apa-parallel", "controller", "apa.drive.k1", 20.0),
-        ("apa-parallel", "controller", "apa.drive.speed", 0.2),
-        ("apa-parallel", "controller", "apa.guard.duration", 1.0),
         ("guo2015-case4", "vehicle", "car.steering.rate_limit", 0.01),
         ("guo2015-case1", "vehicle", "driver.speed_error", 0.5),
         ("guo2015-case1", "vehicle", "driver.takeover_time", 0.0),
         ("zhang2022-double-track", "vehicle", "drive.drive_lag", 2.0),
         ("zhang2022-double-track", "vehicle", "road.grip[1]", 0.02),
-        ("apa-parallel-real", "vehicle", "odometry.radius_error", 0.1),
-        ("apa-parallel", "vehicle", "ultrasonic.noise", 0.5),
+        ("adaptive", "vehicle", "ultrasonic.noise", 0.5),
     ],
 )
 def test_a_changed_tunable_acts(name: str, owner: str, parameter: str, value: float) -> None:

@@ -20,7 +20,7 @@ import vehicle_fmu
 from modelkit.variables import variables
 
 FILE = Path(__file__).parent / "numbers.json"
-MODELS = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.PARKING)
+MODELS = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.APA)
 Number = float | int
 
 

@@ -154,7 +154,7 @@ def test_a_bad_system_or_environment_is_refused(asked: list[str], capsys: pytest
 
 def test_a_scene_gives_a_system_of_ours_what_it_has_parameters_for() -> None:
     scene = scene_source("parallel", EnvironmentOptions()).scenario_of(1)
-    parking = for_system(scene, "parking")
+    parking = for_system(scene, "apa")
     assert parking.vehicle == scene.vehicle
     assert parking.controller["target.x"] == scene.controller["target.x"]
     assert any(name.startswith("map[1]") for name in parking.controller)

@@ -20,7 +20,7 @@ from orchestrator.studies.live.situation import page_scenarios
 from orchestrator.testing.coverage.tracer import name_of, tracing
 from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
-SHIPPED = [scenario.name for scenario in (*page_scenarios(), *page_scenarios("parking"))]
+SHIPPED = [scenario.name for scenario in (*page_scenarios(), *page_scenarios("apa"))]
 EACH_CHANGE = (
     *("guo2015-case4", "apa-parallel", "zhang2022-double-track", "adaptive", "hsic", "preview"),
     *("fault-pose-noise", "apa-takeover"),

@@ -65,7 +65,7 @@ def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
 
 @pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute
 def test_the_parking_system_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
-    scenarios = page_scenarios("parking")
+    scenarios = page_scenarios("apa")
     page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
     page.fill("#search", "scene.boxes[6].y")
     page.click("#found button")

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
+from controller_fmu import APA, SYSTEM_MODELS
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu import PARKING, SYSTEM_MODELS
 from fmus.contents.arrays import visible_arrays
 from fmus.contents.variables import limits, visible_variables
 from modelkit.connections import connections, part_of
@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import variables
 from vehicle_fmu import MODEL as VEHICLE
 
-CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, PARKING, *SYSTEM_MODELS.values())
+CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, APA, *SYSTEM_MODELS.values())
 
 
 def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:
@@ -51,4 +51,4 @@ def test_what_is_connected_inside_is_of_the_same_signal(controller: Model[Any, A
         taken = variables(models[wire.target].inputs)[wire.input]
         facts = [(item.name, item.kind, item.signal._replace(text="")) for item in (output, taken)]
         assert facts[0] == facts[1]
-    assert len(wires) > 20
+    assert len(wires) > 15

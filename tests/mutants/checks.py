@@ -11,18 +11,17 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-NATIVE = ("apa", "preview")
+NATIVE = ("preview",)
 """Systems whose scenarios take minutes in plain Python: they are compiled."""
 TESTS = {
     "guo2015": ("limits_of_time", "guo", "tracking_laws", "two_arc", "smooth_paths", "steering_monitor"),
-    "apa": ("limits_of_time", "apa"),
     "zhang2022": ("zhang",),
     "hsic": ("hsic",),
     "preview": ("preview",),
 }
 """Names of the test files of each system."""
 SCENARIOS = {"guo2015": ("guo2015-*", "fault-*")}
-QUICK = {"apa": ("apa-parallel", "apa-perpendicular")}
+QUICK: dict[str, tuple[str, ...]] = {}
 """Driven in plain Python before anything is compiled: nearly every mistake shows there."""
 
 
@@ -73,10 +72,6 @@ def record(system: str) -> str:
     asked = [(name, "none") for name in QUICK.get(system, ())]
     asked += [(name, _kind(system)) for name in scenarios_of(system)]
     found = next((f"record of {name}" for name, kind in asked[: len(QUICK.get(system, ()))] if differs(name, kind)), "")
-    if not found and system == "apa":
-        from tests.golden.test_planner import FILE, differing
-
-        found = next(("record of " + name for name in differing(json.loads(FILE.read_text(encoding="utf-8")))), "")
     rest = asked[len(QUICK.get(system, ())) :]
     return found or next((f"record of {name}" for name, kind in rest if differs(name, kind)), "")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 CONTROLLERS = Path("controller_fmu")
-SYSTEMS = ("guo2015", "apa", "zhang2022", "hsic", "preview")
+SYSTEMS = ("guo2015", "zhang2022", "hsic", "preview")
 """Packages of ``controller_fmu`` that are systems of papers."""
 NOT_LAWS = ("__init__.py", "outputs.py", "signals.py")
 FACTOR = 1.5

@@ -6,6 +6,7 @@ import pytest
 import yaml
 
 from apa_cosim.testing import ClosedLoopRun, OpenLoopRun
+from controller_fmu import APA
 from modelkit.variables import variables
 from orchestrator.cli import main
 from orchestrator.evaluation.verdict.numbers import NUMBERS
@@ -16,6 +17,8 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.renamed_names import (
     METRICS,
+    MOVED_VARIABLES,
+    REMOVED_VARIABLES,
     SCENARIO_KEYS,
     SHIPPED_NAMES,
     VARIABLES,
@@ -174,7 +177,7 @@ def test_the_runs_of_the_fixtures_name_the_new_methods(cls: type) -> None:
 def test_the_table_holds_names_that_exist_and_no_old_one_does() -> None:
     names = {
         f"{owner}.{item.name}"
-        for owner, model in MODELS.items()
+        for owner, model in (*MODELS.items(), ("controller", APA))
         for cls in (model.params, model.inputs, model.outputs)
         for item in variables(cls)
     }
@@ -182,6 +185,10 @@ def test_the_table_holds_names_that_exist_and_no_old_one_does() -> None:
         assert old.count(".") == new.count(".")
         assert any(name == new or name.startswith(f"{new}.") for name in names) or "preview" in new, new
         assert not any(name == old or name.startswith(f"{old}.") for name in names), old
+    for old, new in MOVED_VARIABLES.items():
+        assert any(name == new or name.startswith(f"{new}.") for name in names), new
+        assert not any(name == old or name.startswith(f"{old}.") for name in names), old
+    assert not [old for old in REMOVED_VARIABLES if any(f"{name}.".startswith(f"{old}.") for name in names)]
     assert set(METRICS.values()) <= NUMBERS.keys()
     assert not METRICS.keys() & NUMBERS.keys()
     top = {(old, new) for old, new in SCENARIO_KEYS.items() if "." not in old}
@@ -191,3 +198,18 @@ def test_the_table_holds_names_that_exist_and_no_old_one_does() -> None:
     assert new_name("shifts") == "manoeuvres"
     assert new_name("wobble") == "vehicle.driver.speed_oscillation_amplitude"
     assert new_name("nothing") == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("controller.apa.drive.creep", "it is called controller.drive.creep_speed now"),
+        ("controller.apa.drive.k1", "it is called controller.drive.k1 now"),
+        ("controller.apa.plan.at_a_time", "this version has no such variable"),
+    ],
+)
+def test_parameters_in_another_group_are_rejected_with_their_present_name(
+    name: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "apa-parallel", "--set", f"{name}=1", "--out", str(tmp_path / "out")]) == 2
+    assert said in capsys.readouterr().err

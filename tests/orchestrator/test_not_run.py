@@ -170,7 +170,7 @@ def test_what_was_not_measured_is_no_good_margin() -> None:
     columns = {
         "assist.clearance": nan,
         "min_clearance": nan,
-        "mode": nan,
+        "state": nan,
         "end": np.array([ends.ENDLESS], dtype=object),
         "touched.speed": nan,
         **dict.fromkeys(("final.heading_error", "final.lateral_error", "final.outline_margin"), zero),
@@ -178,7 +178,7 @@ def test_what_was_not_measured_is_no_good_margin() -> None:
     for goal in ends.GOALS:
         assert goal.margins is not None
         assert goal.margins(columns)[0] < 0.0
-    never = {**columns, "min_clearance": np.array([0.3]), "mode": zero}
+    never = {**columns, "min_clearance": np.array([0.3]), "state": zero}
     assert all(goal.margins(never)[0] > 0.0 for goal in ends.GOALS if goal.margins)
 
 

@@ -1,4 +1,4 @@
-"""The parking study: the same rows for each system, what stands in its scenes, outcomes by the scene alone."""
+"""The parking study: what stands in its scenes, outcomes by the scene alone."""
 
 import itertools
 import math
@@ -25,8 +25,6 @@ from orchestrator.studies.parking.parking_world.outcome import (
 )
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
-from orchestrator.studies.parking.parking_world.study import study
-from orchestrator.studies.parking.studied_systems import APA_SYSTEM
 from orchestrator.studies.sweep.study.space import Space
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
@@ -36,12 +34,6 @@ ROW = {"kind": 0, "outcome": "parked", "reason": "all checks passed", "steered":
 
 def drawn(count: int = 200) -> dict[str, np.ndarray]:
     return SPACE.values_by_name(np.random.default_rng(5).random((count, len(FACTORS))))
-
-
-def test_rows_do_not_depend_on_the_system() -> None:
-    one, other = study(20, 3), study(20, 3, APA_SYSTEM)
-    assert np.array_equal(one.design.values, other.design.values, equal_nan=True)
-    assert one.scenario.controller["system"] != other.scenario.controller["system"]
 
 
 def test_cars_of_a_row_stand_apart_by_their_gap() -> None:

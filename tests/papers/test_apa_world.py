@@ -1,4 +1,4 @@
-"""The parking assist in the world: the scenes are as said, a run's end is what it touched, rows come back."""
+"""The parking system in the world: the scenes are as said, a run's end is what it touched, rows come back."""
 
 import math
 from pathlib import Path
@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from controller_fmu.parking.chart import ParkingState
 from modelkit.geometry import Box, boxes_gap, corners
 from orchestrator.commands.sweep import select_study
-from orchestrator.studies.parking.parkings import GBT
+from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.studies.parking.world import ends
 from orchestrator.studies.parking.world.factors import FACTORS
 from orchestrator.studies.parking.world.feasibility import HEARD, feasibility_columns
@@ -105,25 +106,26 @@ def test_fewer_runs_are_the_first_of_more() -> None:
 
 
 def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
-    row = {"touched.mode": 4.0, "touched.takeover": 0.0, "mode": 6.0, "reason": "none", "kind": 0.0}
+    row = {"touched.state": 5.0, "touched.takeover": 0.0, "outcome": "parked", "reason": "", "kind": 0.0}
     row["within GB/T 41630, parallel"] = True
+    assert ends.end_of({**row, "outcome": "not_parked", "reason": f"{BEYOND}: final heading"}, None) == ends.PARKED
     wall, person = ends.InitialContact("wall behind", False), ends.InitialContact("person", True)
     assert ends.end_of(row, wall) == ends.CONTACT
-    assert ends.end_of({**row, "touched.mode": 2.0}, wall) == ends.DRIVER
+    assert ends.end_of({**row, "touched.state": float(ParkingState.SEARCHING)}, wall) == ends.DRIVER
     assert ends.end_of(row, person) == ends.WALKED_INTO
     kerb = ends.InitialContact("kerb behind", False)
     assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.08}, kerb) == ends.CONTACT
     assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.079}, kerb) == ends.LOW_KERB
     assert ends.end_of(row, None) == ends.PARKED
     assert ends.end_of({**row, "within GB/T 41630, parallel": False}, None) == ends.FALSE
-    assert ends.end_of({**row, "mode": 7.0, "reason": "no_slot"}, None) == ends.FAILED
-    assert ends.end_of({**row, "mode": 4.0}, None) == ends.ENDLESS
+    assert ends.end_of({**row, "outcome": "failed", "reason": "no_slot"}, None) == ends.FAILED
+    assert ends.end_of({**row, "outcome": "not_parked"}, None) == ends.ENDLESS
 
 
 def test_a_neighbour_who_has_moved_moves_the_line_of_a_row_across_the_road() -> None:
     """The car, 4 m long and 1.7 m wide, stands 30 cm out of a slot of its length, and of 4.5 m with the mouth at 0."""
     row: dict[str, Any] = {
-        "mode": 6.0, "reason": "none", "within GB/T 41630, perpendicular": False, "kind": 1.0, "manoeuvres": 3,
+        "outcome": "parked", "reason": "", "within GB/T 41630, perpendicular": False, "kind": 1.0, "manoeuvres": 3,
         "duration": 40.0, "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.outline_margin": -0.3,
         "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
         "vehicle.car.wheelbase": 2.5, "vehicle.car.front_overhang": 0.8, "vehicle.car.rear_overhang": 0.7,
@@ -228,22 +230,3 @@ def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:
     assert ((touched != "") == np.isfinite(table.column("touched.x"))).all()
     again = repeat_row(table, int(np.flatnonzero(ended == ends.PARKED)[0]), tmp_path / "again", pages=False)
     assert again.different == []
-
-
-def test_another_system_is_judged_by_what_every_controller_reports() -> None:
-    """The rows are the same, so that two systems can be compared in pairs."""
-    own, other = study(runs=20, seed=3), study(runs=20, seed=3, system=8)
-    np.testing.assert_array_equal(own.design.values, other.design.values)
-    assert other.name == "apa-world-8"
-    assert not any("apa" in measure.signal for measure in other.measures.values())
-    row = {"outcome": "parked", "reason": "all checks passed", "kind": 0, f"within {GBT[1]}": 1.0}
-    assert ends.end_of_any(row, None) == "parked"
-    assert ends.end_of_any({**row, f"within {GBT[1]}": 0.0}, None) == "false parked"
-    assert ends.end_of_any({**row, "outcome": "failed"}, None) == "gave up"
-    touching = {"touched.steering_active": 1.0, "touched.takeover": 0.0, "vehicle.scene.kerbs[1].height": 0.0}
-    assert ends.end_of_any(touching, ends.InitialContact("first neighbour", came=False)) == "contact"
-    assert (
-        ends.end_of_any({**touching, "touched.takeover": 1.0}, ends.InitialContact("wall behind", came=False))
-        == "contact, driver drives"
-    )
-    assert ends.end_of_any(touching, ends.InitialContact("person", came=True)) == "walked into"

@@ -93,4 +93,4 @@ SEARCHING = ParkingMemory(state=ParkingState.SEARCHING)
     ],
 )
 def test_the_display_warns(memory: ParkingMemory, alarm: ParkingAlarm) -> None:
-    assert parking_outputs(memory, OWN).parking.alarm == alarm
+    assert parking_outputs(memory, OWN).apa.alarm == alarm

@@ -39,11 +39,11 @@ def driven(name: Any, files: Any, sets: Any = ()) -> Any:
 
 def test_something_in_the_way_is_planned_around_and_somebody_who_goes_is_waited_for(files: Any) -> None:
     _, around, _ = driven("valet-obstacle-on-path", files)
-    assert around.signals["controller.parking.plans"].max() in (2, 3)
+    assert around.signals["controller.apa.plans"].max() in (2, 3)
     _, waited, summary = driven("valet-pedestrian", files)
     assert summary.outcome == "parked"
-    assert waited.signals["controller.parking.plans"].max() in (1, 2)
-    assert waited.signals["controller.parking.is_blocked"].max() == 1
+    assert waited.signals["controller.apa.plans"].max() in (1, 2)
+    assert waited.signals["controller.apa.is_blocked"].max() == 1
 
 
 def test_a_case_becomes_a_scenario_that_is_judged_by_its_polygons(files: Any, tmp_path: Path) -> None:

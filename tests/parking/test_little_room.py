@@ -29,7 +29,7 @@ def driven(folder: Path, start: tuple[float, float, float], target: tuple[float,
         "target": poses[1],
         "obstacles": polygons,
         "vehicle": {"body": "kinematic", "start": poses[0]},
-        "controller": {"system": "parking", "search": {"active": False}, "plan": {"min_margin": 0.01}},
+        "controller": {"system": "apa", "search": {"active": False}, "plan": {"min_margin": 0.01}},
         "requirements": [],
     }
     file = folder / "little-room.yaml"

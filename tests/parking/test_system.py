@@ -26,7 +26,7 @@ SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "library" / "scenarios"
 def as_parking(name: str, folder: Path, **changes: Any) -> str:
     """Return a file with a shipped scenario, driven by this system."""
     scenario = yaml.safe_load((SCENARIOS / f"{name}.yaml").read_text(encoding="utf-8"))
-    scenario |= {"name": "trial", "controller": {"system": "parking"}, "requirements": ["valet-slot"], **changes}
+    scenario |= {"name": "trial", "controller": {"system": "apa"}, "requirements": ["valet-slot"], **changes}
     file = folder / "trial.yaml"
     file.write_text(yaml.safe_dump(scenario), encoding="utf-8")
     return str(file)

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controller_fmu.apa.slot import Kind, Side
-from controller_fmu.apa.ways.move import Move, Piece, end_of
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.geometry import sample_path
 from orchestrator.presentation.report.payload import Arrays
@@ -23,7 +22,7 @@ def recording() -> Any:
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_a_sampled_move_ends_where_the_controller_says(direction: int) -> None:
-    pieces = (Piece(1.5, 0.0, 0.15), Piece(2.0, 0.15, 0.15), Piece(1.0, 0.15, -0.1), Piece(0.5, 0.0, 0.0))
+    pieces = ((1.5, 0.0, 0.15), (2.0, 0.15, 0.15), (1.0, 0.15, -0.1), (0.5, 0.0, 0.0))
     start = Pose(3.0, -2.0, 0.7)
     values = {"apa.move.direction": float(direction)}
     values |= {f"apa.move.start.{axis}": value for axis, value in start._asdict().items()}
@@ -31,28 +30,29 @@ def test_a_sampled_move_ends_where_the_controller_says(direction: int) -> None:
         for name, value in zip(("length", "start_curvature", "end_curvature"), piece, strict=True):
             values[f"apa.move.pieces[{number}].{name}"] = value
     points = sample_path(values, 0.02)
-    end = end_of(Move(start, direction, (*pieces, *(Piece(),) * 3)))
+    end = start
+    for length, k0, k1 in pieces:
+        end = advance(end, direction, length, k0, k1)
     assert points[0] == pytest.approx([start.x, start.y])
     assert points[-1] == pytest.approx([end.x, end.y], abs=1e-4)
 
 
-@pytest.mark.parametrize(("side", "mirror"), [(Side.RIGHT, 1.0), (Side.LEFT, -1.0)])
-def test_a_found_slot_lies_on_its_side_of_the_road(side: Any, mirror: Any) -> None:
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_found_slot_lies_on_its_side_of_the_road(side: float) -> None:
     heading = 0.3
-    values = {"apa.slot.kind": float(Kind.PARALLEL), "apa.slot.side": float(side), "apa.slot.length": 6.0}
-    values |= {"apa.slot.b_out": 0.1, "apa.slot.depth": 2.2}
-    values |= {"apa.slot.a.x": 4.0, "apa.slot.a.y": 5.0, "apa.slot.a.heading": heading}
     along = np.array([math.cos(heading), math.sin(heading)])
-    out = mirror * np.array([-math.sin(heading), math.cos(heading)])
+    into = side * np.array([-math.sin(heading), math.cos(heading)])
     a = np.array([4.0, 5.0])
-    expected = [a, a + 6.0 * along + 0.1 * out, a + 6.0 * along - 2.2 * out, a - 2.2 * out]
+    b = a + 6.0 * along
+    values = {"apa.slot.type": 1.0, "apa.slot.side": side, "apa.slot.depth": 2.2}
+    values |= {"apa.slot.ax": a[0], "apa.slot.ay": a[1], "apa.slot.bx": b[0], "apa.slot.by": b[1]}
     found = slot_corners(values)
     assert found is not None
-    np.testing.assert_allclose(found, expected, atol=1e-12)
+    np.testing.assert_allclose(found, [a, b, b + 2.2 * into, a + 2.2 * into], atol=1e-12)
 
 
 def test_no_slot_no_pose_no_path() -> None:
-    assert slot_corners({"apa.slot.kind": 0.0}) is None
+    assert slot_corners({"apa.slot.type": 0.0}) is None
     assert target_pose({}) is None
     assert len(sample_path({})) == 0
 
@@ -73,7 +73,7 @@ def test_plans_follow_the_run(recording: Any) -> None:
 def test_every_changing_mode_is_a_ribbon_once(recording: Any) -> None:
     ribbons = ribbons_of([recording])
     assert ribbons[0] == "controller.phase"
-    assert "controller.apa.mode" in ribbons
+    assert "controller.apa.state" in ribbons
     shorts = [name.partition(".")[2] for name in ribbons]
     assert len(shorts) == len(set(shorts))
     assert "controller.hsic.stage" not in ribbons

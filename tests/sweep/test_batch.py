@@ -170,7 +170,7 @@ def test_shipped_faults(bind: Any, name: Any) -> None:
 
 
 def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
-    """One that the search needs, and one that the way in does without."""
+    """One in the search, one while entering the slot: the system parks all the same."""
     nan = {"kind": "override", "value": "nan", "start": 4.0}
     faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (9, 8)]
     (tmp_path / "a.yaml").write_text(f"extends: apa-parallel\nfaults: {json.dumps(faults)}\n")
@@ -179,7 +179,7 @@ def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
     rows = run_batch(job, chunk)
     assert_same(job, chunk, rows, 0)
     verdict = judge(job, truths(job, chunk), rows)
-    assert list(verdict.reason) == ["sensor_loss"] * 2 + ["all checks passed"] * 2
+    assert list(verdict.reason) == ["all checks passed"] * 4
 
 
 def test_the_time_of_an_instant(bind: Any) -> None:

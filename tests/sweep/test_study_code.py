@@ -54,5 +54,5 @@ def test_explain_says_what_is_omitted(capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["sweep", "guo2015-speed-rate", "--explain"]) == 0
     text = capsys.readouterr().out
     assert "ultrasonic" in text
-    assert "1 of 6 systems: guo2015" in text
+    assert "1 of 5 systems: guo2015" in text
     assert "has code of its own" in text

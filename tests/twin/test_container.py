@@ -192,7 +192,7 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(recording:
     assert known["controller.guo2015.k1"].variability == "tunable"
     assert known["controller.lateral_error"].causality == "local"
     assert known["controller.phase"].variability == "discrete"
-    assert "controller.apa.drive.k1" not in known, "of another system"
+    assert "controller.hsic.gain.k1" not in known, "of another system"
     assert CASE.target is not None
     assert float(known["controller.target.x"].start) == CASE.target.x
     inputs = [v.name for v in description.modelVariables if v.causality == "input"]

@@ -15,14 +15,11 @@ from orchestrator.simulation.cosim.interrupts import on_interrupt
 from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC
 from orchestrator.studies.benchmark.scenes import ROWS, SceneRow, rows_of, scenes_in
 from orchestrator.studies.benchmark.table import as_json, csv_text, figures_of, table_lines
-from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
 
-OTHER_SYSTEMS = {"parking": PARKING_SYSTEM}
 EXAMPLES = """examples:
   apa bench parking                              the shipped scenarios valet-*
   apa import tpcap cases --out tpcap             scenes of TPCAP, ParkBench: see apa import --help
   apa bench parking tpcap parkbench --out results
-  apa bench parking tpcap --system parking
   apa bench parking parkbench --body kinematic --json > parkbench.json
   apa bench parking tpcap --optimal              also beside the time-optimal motion: apa bench optimal --help
 
@@ -48,7 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="compare each drive with the time-optimal motion near it (some seconds each)",
     )
-    parser.add_argument("--system", choices=OTHER_SYSTEMS, help="drive with this system instead of the scenario's")
     parser.add_argument("--fresh", action="store_true", help="plan and drive all scenes again")
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--json", action="store_true", help="print JSON instead of the table")
@@ -61,8 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     bodies = list(dict.fromkeys(arguments.body or BODIES))
     if arguments.optimal and KINEMATIC not in bodies:
         raise BadInput("the optimum is compared with the kinematic drive: add --body kinematic", key="--optimal")
-    system = OTHER_SYSTEMS.get(arguments.system)
-    scenes = scenes_in(arguments.places, bodies, arguments.optimal, system)
+    scenes = scenes_in(arguments.places, bodies, arguments.optimal)
     interrupt = Interrupt()
     rows: list[SceneRow] = []
     with lock_folder(out):

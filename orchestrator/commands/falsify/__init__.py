@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from orchestrator.studies.falsification.subject import Subject
 
 EXAMPLES = """examples:
-  apa falsify apa-world                              search for contact of the parking assist
+  apa falsify apa-world                              search for contact of the parking system
   apa falsify apa-world --requirement claim --budget 5000 --seed 2
   apa falsify my-study.yaml --requirement "final heading"
   apa falsify my-study.yaml --controller their.fmu --budget 300

@@ -11,7 +11,7 @@ from orchestrator.evaluation.verdict.conditions import CONDITIONS
 from orchestrator.evaluation.verdict.numbers import NUMBERS, RunFacts, signals_of
 from orchestrator.evaluation.verdict.truth import Bools
 from orchestrator.inputs.scenario.end_condition import state_word, states_of
-from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.models import MODELS, apart_models
 from orchestrator.inputs.scenario.requirements import Condition, Occasion, Requirement, Window
 from orchestrator.inputs.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -114,7 +114,8 @@ def _has_phases(names: list[str], recording: Recording) -> bool:
 
 @cache
 def _signal_names() -> frozenset[str]:
-    return frozenset(f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.outputs))
+    models = [*MODELS.items(), *(("controller", model) for model in apart_models().values())]
+    return frozenset(f"{owner}.{item.name}" for owner, model in models for item in variables(model.outputs))
 
 
 def _not_judged(item: Requirement) -> Check:

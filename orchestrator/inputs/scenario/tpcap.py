@@ -47,7 +47,7 @@ def read_tpcap(path: Path) -> dict[str, Any]:
         "obstacles": [points[end - size : end] for end, size in zip(ends, sizes, strict=True)],
         "vehicle": {"start": {"x": start[0] - goal[0], "y": start[1] - goal[1], "heading": start[2]}},
         "controller": {
-            "system": "parking",
+            "system": "apa",
             "search": {"active": False},
             "plan": {"margin": PLAN_MARGIN, "min_margin": MIN_PLAN_MARGIN, "curvature_fraction": 1.0},
         },

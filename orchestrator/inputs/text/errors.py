@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from orchestrator.inputs.text.renamed_names import VALUES, new_name
+from orchestrator.inputs.text.renamed_names import VALUES, is_removed, moved_name, new_name
 
 PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes. What was not judged never ends with the first two."""
@@ -73,6 +73,11 @@ def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
     """
     import difflib
 
+    for name in (prefix + word, word):
+        if moved_name(name):
+            return f"; it is called {moved_name(name)} now"
+        if is_removed(name):
+            return "; this version has no such variable"
     now = new_name(word, prefix)
     if now:
         return f"; it is called {now} now{'' if word.startswith('-') else MIGRATE}"

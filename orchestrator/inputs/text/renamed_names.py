@@ -18,10 +18,9 @@ SCENARIO_KEYS = {
 }
 """Keys of a scenario, nested ones with dots."""
 VARIABLES = {
-    "controller.apa.end.miss_heading": "controller.apa.end.final_heading_error",
-    "controller.apa.end.miss_lateral": "controller.apa.end.final_lateral_error",
-    "controller.apa.plan.shifts": "controller.apa.plan.manoeuvres",
-    "controller.apa.guard.patience": "controller.apa.guard.driver_response_timeout",
+    "controller.apa.mode": "controller.apa.state",
+    "controller.apa.slot.kind": "controller.apa.slot.type",
+    "controller.apa.target": "controller.apa.goal",
     "controller.choice": "controller.driver_selection",
     "controller.drive.brake": "controller.drive.brake_deceleration",
     "controller.drive.creep": "controller.drive.creep_speed",
@@ -75,6 +74,52 @@ VARIABLES = {
     "vehicle.steering.stuck_time": "vehicle.steering.fault_time",
 }
 """Parameters and signals; a group stands for all that is in it."""
+MOVED_VARIABLES = {
+    "controller.apa.drive": "controller.drive",
+    "controller.apa.drive.brake": "controller.drive.brake_deceleration",
+    "controller.apa.drive.creep": "controller.drive.creep_speed",
+    "controller.apa.drive.delay": "controller.drive.brake_delay",
+    "controller.apa.drive.reaction": "controller.drive.driver_reaction",
+    "controller.apa.end.final_heading_error": "controller.final.accepted_heading",
+    "controller.apa.end.final_lateral_error": "controller.final.accepted",
+    "controller.apa.end.heading": "controller.final.heading",
+    "controller.apa.end.lateral": "controller.final.position",
+    "controller.apa.end.miss_heading": "controller.final.accepted_heading",
+    "controller.apa.end.miss_lateral": "controller.final.accepted",
+    "controller.apa.end.out": "controller.slot.stand_out",
+    "controller.apa.guard.blocked": "controller.monitor.wait",
+    "controller.apa.guard.brake_delay": "controller.monitor.brake_delay",
+    "controller.apa.guard.confirm": "controller.slot.confirm_time",
+    "controller.apa.guard.driver_response_timeout": "controller.limit.driver_response_timeout",
+    "controller.apa.guard.duration": "controller.limit.duration",
+    "controller.apa.guard.gap": "controller.monitor.map_distance",
+    "controller.apa.guard.over_speed": "controller.monitor.over_speed",
+    "controller.apa.guard.over_speed_time": "controller.monitor.over_speed_time",
+    "controller.apa.guard.patience": "controller.limit.driver_response_timeout",
+    "controller.apa.guard.surprise": "controller.monitor.unexplained",
+    "controller.apa.guard.surprise_gap": "controller.monitor.echo_distance",
+    "controller.apa.map.noise": "controller.mapping.range_noise",
+    "controller.apa.plan.curvature_share": "controller.plan.curvature_fraction",
+    "controller.apa.plan.manoeuvres": "controller.limit.manoeuvres",
+    "controller.apa.plan.margin": "controller.plan.margin",
+    "controller.apa.plan.shifts": "controller.limit.manoeuvres",
+    "controller.apa.plan.stand_out": "controller.slot.stand_out",
+    "controller.apa.search.speed": "controller.slot.speed",
+    "controller.apa.search.way": "controller.slot.distance",
+    "controller.apa.search.wish": "controller.slot.wanted",
+    "controller.apa.slot.a.x": "controller.apa.slot.ax",
+    "controller.apa.slot.a.y": "controller.apa.slot.ay",
+    "controller.apa.corner_b.x": "controller.apa.slot.bx",
+    "controller.apa.corner_b.y": "controller.apa.slot.by",
+}
+"""Variables in another group: messages give the new name, files are not rewritten."""
+REMOVED_VARIABLES = (
+    *(f"controller.apa.{group}" for group in ("end", "guard", "map", "plan", "search", "sensors")),
+    *(f"controller.apa.{name}" for name in ("confirm", "corner_b", "family", "iso_spare", "moves", "slots")),
+    *(f"controller.apa.slot.{name}" for name in ("a", "b_out", "empty_a", "empty_b", "length", "line", "opposite")),
+    *(f"controller.apa.slot.{name}" for name in ("skew_a", "skew_b", "unsure")),
+)
+"""Variables, and groups of them, without a counterpart."""
 METRICS = {
     "final.slot_margin": "final.outline_margin",
     "shifts": "manoeuvres",
@@ -101,7 +146,7 @@ VALUES = {
     "requirements": SHIPPED_NAMES["requirements"],
     "scenario": SHIPPED_NAMES["scenarios"],
     "kind": {"drop": "dropout", "freeze": "stuck_at_last"},
-    "system": {"valet": "parking", "valet_large": "parking_large"},
+    "system": {"parking": "apa", "parking_large": "apa_large", "valet": "apa", "valet_large": "apa_large"},
     "task": {"run": "open_loop"},
     "where": {"polygons": "obstacles"},
 }
@@ -117,6 +162,21 @@ OPTIONS = {
 API = {"must_be": "assert_outcome", "must_meet": "assert_requirements"}
 """Methods of the runs that the fixtures of the pytest plugin return."""
 DOTTED_NAMES = SCENARIO_KEYS | VARIABLES | METRICS
+
+
+def moved_name(path: str) -> str:
+    """Return a dotted name in the group that it is in now; empty if it has not moved."""
+    owner = next((old for old in sorted(MOVED_VARIABLES, key=len, reverse=True) if _is_part(path, old)), "")
+    return MOVED_VARIABLES[owner] + path[len(owner) :] if owner else ""
+
+
+def is_removed(path: str) -> bool:
+    """Return whether a dotted name was that of a variable that has no counterpart."""
+    return any(_is_part(path, old) for old in REMOVED_VARIABLES)
+
+
+def _is_part(path: str, group: str) -> bool:
+    return path == group or path.startswith(f"{group}.")
 
 
 def current_name(path: str) -> str:

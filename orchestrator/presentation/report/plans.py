@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from orchestrator.evaluation.verdict.frame import pose_at
-from orchestrator.evaluation.verdict.geometry import PLANNED, find_changes, is_planned, place, sample_path
+from orchestrator.evaluation.verdict.geometry import PLANNED, find_changes, is_planned, sample_path
 from orchestrator.presentation.report.payload import Arrays
 from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 from orchestrator.simulation.cosim.recording import Recording
 
 MOST_PLANS = 60
-PARTS = re.compile(rf"controller\.({PLANNED.pattern}|.*\bslot\.|.*\bcorner_b\.|.*\btarget\.)")
+PARTS = re.compile(rf"controller\.({PLANNED.pattern}|.*\bslot\.|.*\bgoal\.)")
 OPEN_DEPTH = 5.5
 """Drawn depth [m] of a slot whose end the sensors have not seen."""
 Point = tuple[float, float]
@@ -53,20 +53,19 @@ def _fewer(changes: Indices, t: Array, most: int) -> list[int]:
 
 
 def slot_corners(values: Mapping[str, float]) -> Array | None:
-    """Return the corners (4, 2) [m] of the slot a parking assist has chosen; None if it has none.
+    """Return the corners (4, 2) [m] of the slot that the parking system has chosen; None if it has none.
 
-    Corner A is the edge passed first, x runs along the road to corner B, the slot lies to the right
-    (``side`` 0) or to the left.
+    A and B lie at the road, A is passed first; the slot lies to the left of A to B (``side`` 1) or to the right.
     """
-    if not values.get("apa.slot.kind", 0.0) > 0.0:
+    if not values.get("apa.slot.type", 0.0) > 0.0:
         return None
-    length, out = values["apa.slot.length"], values["apa.slot.b_out"]
-    depth = min(values["apa.slot.depth"], OPEN_DEPTH)
-    mirror = -1.0 if values["apa.slot.side"] > 0.0 else 1.0
-    corners = np.array([[0.0, 0.0], [length, out], [length, -depth], [0.0, -depth]]) * np.array([1.0, mirror])
-    return place(corners, *pose_at(values, "apa.slot.a"))
+    a, b = (np.array([values[f"apa.slot.{corner}{axis}"] for axis in "xy"]) for corner in "ab")
+    along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
+    depth = min(values["apa.slot.depth"], OPEN_DEPTH) * values["apa.slot.side"]
+    into = depth * np.array([-along[1], along[0]])
+    return np.array([a, b, b + into, a + into])
 
 
 def target_pose(values: Mapping[str, float]) -> tuple[float, float, float] | None:
-    """Return the pose a parking assist wants to park at; None if it has no slot."""
-    return pose_at(values, "apa.target") if values.get("apa.slot.kind", 0.0) > 0.0 else None
+    """Return the pose that the parking system wants to reach; None if it has planned no path."""
+    return pose_at(values, "apa.goal") if values.get("apa.plans", 0.0) > 0.0 else None

@@ -34,12 +34,12 @@ class Drive(NamedTuple):
     why: str
     """Why it is not parked; empty if it is."""
     time: float
-    """From the first instant (the assist: from the driver's confirmation) until the car stands parked."""
+    """From the first instant until the car stands parked."""
     manoeuvres: int
     lateral: float
     heading: float
     clearance: float
-    """Smallest of the whole run (the assist: with its way past the slot)."""
+    """Smallest of the whole run."""
     effort: float
     """What the steering wheel turned in all [rad]."""
 

@@ -1,8 +1,8 @@
 """What the bake-off drives: controllers, slots, cars, starts, bodies, disturbances, as scenarios.
 
 Every slot lies between two parked cars before a wall; its target has the car flush with the neighbours.
-The papers' controllers receive slot, target and start. The parking assist receives nothing: it drives past
-along the line through the same start pose, finds the slot with its sensors and chooses its own target.
+The controllers receive slot, target and start. A system that searches its slot is a model of its own: it has other
+studies.
 """
 
 import itertools
@@ -16,9 +16,7 @@ from orchestrator.inputs.scenario.scenario import Scenario, Slot
 from orchestrator.studies.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 
-CONTROLLERS = ("ntbptcwpt", "ntbpt", "adaptive", "zhang2022", "hsic", "apa")
-ASSIST = "apa"
-"""The controller that looks for its slot."""
+CONTROLLERS = ("ntbptcwpt", "ntbpt", "adaptive", "zhang2022", "hsic")
 SLOTS = (6.2, 7.7, 9.2)
 """Lengths [m]."""
 CARS = ("guo2015", "zhang2022")
@@ -36,17 +34,13 @@ DISTURBANCES: dict[str, dict[str, float]] = {
 REAR_END, DEPTH = -1.25, 2.2
 """The slot's rear end from the target, and its depth from the neighbours to the wall [m]."""
 NEIGHBOUR_LENGTH, NEIGHBOUR_WIDTH, WALL_LENGTH, WALL_WIDTH = 4.4, 1.8, 40.0, 1.0
-DRIVER_SPEED, SEARCH_SPEED = 0.5, 2.0
-"""Of the driver while parking, and while driving past [m/s]."""
+DRIVER_SPEED = 0.5
+"""Of the driver while parking [m/s]."""
 LABELS = ("controller", "slot", "car", "body", "start", "disturbance")
-LEAD_IN = 5.0
-"""The assist's run begins this far behind the rear neighbour [m]."""
-
-
 LIMITS = ("gbt41630", "no-contact")
 """What a parked car is judged by."""
 UNJUDGED = ("vehicle.speed",)
-"""GB/T's limit on the speed while parking; the assist drives past the slot before."""
+"""GB/T's limit on the speed while parking."""
 
 
 def entries() -> Iterator[LabelledScenario]:
@@ -59,10 +53,7 @@ def scenario_of(controller: str, slot: float, car: str, body: str, start: str, d
     """Return the scenario of one run."""
     base = _base(controller, slot, car)
     ahead, y, degrees = STARTS[start]
-    x, slope = REAR_END + slot + ahead, math.tan(math.radians(degrees))
-    if controller == ASSIST:
-        begin = REAR_END - NEIGHBOUR_LENGTH - LEAD_IN
-        x, y = begin, y - (x - begin) * slope
+    x = REAR_END + slot + ahead
     vehicle = {**base.vehicle, "body": int(Body[body.upper()]), "start.x": x, "start.y": y}
     vehicle["start.heading"] = math.radians(degrees)
     for key, value in DISTURBANCES[disturbance].items():
@@ -76,11 +67,10 @@ def scenario_of(controller: str, slot: float, car: str, body: str, start: str, d
 @lru_cache
 def _base(controller: str, slot: float, car: str) -> Scenario:
     """Return the scenario without start, body and disturbance."""
-    searches = controller == ASSIST
     sets = {
         "car": car,
-        "stop_time": 200 if searches else 120,
-        "vehicle.driver.profile[1].speed": SEARCH_SPEED if searches else DRIVER_SPEED,
+        "stop_time": 120,
+        "vehicle.driver.profile[1].speed": DRIVER_SPEED,
         "controller.system": controller,
     }
     loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
@@ -90,9 +80,6 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     reported["hsic.slot.rear_gap"] = -REAR_END - loaded.vehicle["car.rear_overhang"]
     room = {"slot_front": REAR_END + slot, "slot_rear": -REAR_END, "line": line, "depth": DEPTH}
     reported |= {f"adaptive.room.{key}": value for key, value in room.items()}
-    if searches:
-        vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
-        reported = {}
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in library_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **reported}

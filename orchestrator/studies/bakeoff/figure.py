@@ -21,7 +21,6 @@ COLOURS = {
     "adaptive": "#c9a227",
     "zhang2022": "#d1602a",
     "hsic": "#2b8a5a",
-    "apa": "#8a4fa8",
 }
 BAR_WIDTH = 0.14
 """Width of a bar; the slots lie 1 apart."""

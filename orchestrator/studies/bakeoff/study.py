@@ -1,4 +1,4 @@
-"""The bake-off as a study: every parking controller in the same slots, with the same cars, bodies and disturbances."""
+"""The bake-off as a study: controllers that know their slot, with the same slots, cars, bodies and disturbances."""
 
 import math
 import statistics
@@ -6,18 +6,16 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 from rich.markup import escape
 from rich.table import Table as Printed
 
-from orchestrator.evaluation.verdict.measures import Measure
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.inputs.scenario.end_condition import EndCondition
 from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.bakeoff.drives import EXACT, REFUSED, Drive, drives, exact_limits
-from orchestrator.studies.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, entries
+from orchestrator.studies.bakeoff.entries import CONTROLLERS, SLOTS, entries
 from orchestrator.studies.bakeoff.figure import draw
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
@@ -25,7 +23,7 @@ from orchestrator.studies.sweep.table import Table
 
 CONTENT = {
     "name": "bakeoff",
-    "title": "Every parking controller in the same slots",
+    "title": "Controllers with a known slot in the same slots",
     "description": "Three slots, two cars, two bodies, three starts, five disturbances. Parked: within GB/T 41630, "
     "no contact.",
     "map": {"x": "slot", "y": "controller", "split": None},
@@ -34,9 +32,6 @@ FOOTNOTES = (
     "Medians of the parked runs. Refused: no path from this start. Parked: the controller reports it, at standstill "
     "in the slot, within the limits of GB/T 41630, without contact. Exact: also within the lateral and heading limits "
     "of the set project.",
-    "apa has no slot, target or start as input: it drives past at 2 m/s along the line through the start pose, with "
-    "1 cm of sensor noise, and chooses where it starts to park. Its time counts from the driver's confirmation, its "
-    "clearance includes the search. It chooses its longitudinal position, so longitudinal errors are not compared.",
 )
 HEADS = ("slot [m]", "controller", "runs", "refused", "parked", "exact", "time [s]", "manoeuvres", "lateral [cm]")
 MORE = ("heading [deg]", "clearance [m]", "wheel [turns]", "why not")
@@ -49,7 +44,7 @@ MEDIANS: tuple[Callable[[Drive], float], ...] = (
     lambda item: item.effort / (2.0 * math.pi),
 )
 TIME = DerivedParameter(
-    {"time": Metric("s", "from the start (assist: from confirmation) until the vehicle is parked")},
+    {"time": Metric("s", "from the start until the vehicle is parked")},
     lambda columns: {"time": _times(columns)},
 )
 
@@ -63,8 +58,7 @@ def study_of(cases: list[LabelledScenario]) -> Study:
     """Return the study of some drives."""
     scenario, design = design_of(cases)
     within = {EXACT: list(exact_limits())}
-    measures = {"parking_time": Measure("last", "controller.apa.parking_time")}
-    return Study(scenario, design, CONTENT, measures=measures, within=within, derived=TIME)
+    return Study(scenario, design, CONTENT, within=within, derived=TIME)
 
 
 def report(table: Table, folder: Path) -> int:
@@ -79,8 +73,7 @@ def report(table: Table, folder: Path) -> int:
 
 
 def _times(columns: Columns) -> Array:
-    own = columns["duration"] - EndCondition().standstill
-    times: Array = np.where(columns["controller"] == ASSIST, columns["parking_time"], own)
+    times: Array = columns["duration"] - EndCondition().standstill
     return times
 
 

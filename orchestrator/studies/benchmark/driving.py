@@ -14,7 +14,6 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.recording import Recording
-from orchestrator.studies.parking.studied_systems import with_system
 
 KINEMATIC, DOUBLE_TRACK = "kinematic", "double_track"
 BODIES = {
@@ -30,24 +29,6 @@ BODIES = {
     ),
 }
 """Body -> what is set of the vehicle: the double track has errors of steering, brake, odometry and sensors."""
-
-
-class SceneChanges(NamedTuple):
-    """What a scene is driven with instead of what its file says."""
-
-    overrides: Sequence[str] = ()
-    """As of ``--set``."""
-    system: int | None = None
-    """None: the scene's own."""
-
-
-NO_CHANGES = SceneChanges()
-
-
-def load_scene(name: str, changes: SceneChanges = NO_CHANGES) -> Scenario:
-    """Return the scene ``name`` (a file) with changes. Raises ``BadInput`` if the system's map is too small for it."""
-    scenario = load_scenario(name, list(changes.overrides))
-    return scenario if changes.system is None else with_system(scenario, changes.system)
 
 
 class DrivenScene(NamedTuple):
@@ -81,10 +62,10 @@ def drive_scene(
     files: Mapping[str, Path] | None,
     kind: str,
     interrupt: Interrupt | None = None,
-    changes: SceneChanges = NO_CHANGES,
+    overrides: Sequence[str] = (),
 ) -> tuple[DrivenScene, SceneRun]:
-    """Return how the scene ``name`` (a file) was driven on ``body`` with further ``changes``, and the run itself."""
-    scenario = load_scene(name, changes._replace(overrides=[*BODIES[body], *changes.overrides]))
+    """Return how the scene ``name`` (a file) was driven on ``body`` with ``overrides`` as of ``--set``, and the run."""
+    scenario = load_scenario(name, [*BODIES[body], *overrides])
     ran = run_scenario(scenario, files, kind=kind, interrupt=interrupt)
     facts = facts_of(ran.recording, scenario)
     summary = summarize(ran.recording, scenario, ran.wall_time, facts=facts)

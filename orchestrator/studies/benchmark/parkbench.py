@@ -56,9 +56,9 @@ def read_parkbench(path: Path) -> dict[str, Any]:
     vehicle = scene.vehicle()
     walls, left_out = _walls(scene, target, vehicle)
     corners = 2 * len(walls)
-    system = next((name for name in ("parking", "parking_large") if corners <= map_corners(name)), "")
+    system = next((name for name in ("apa", "apa_large") if corners <= map_corners(name)), "")
     if not system:
-        raise BadInput(f"{corners} corners, the largest map holds {map_corners('parking_large')}", file=path)
+        raise BadInput(f"{corners} corners, the largest map holds {map_corners('apa_large')}", file=path)
     start = scene.start
     return {
         "name": path.stem,

@@ -16,7 +16,7 @@ SAMPLE_NS = 10_000_000
 MAX_SAMPLES = 6000
 FREE_RANGE = 5.0
 """What the ultrasonic sensors measure [m]: no echo."""
-SEARCHED, PIECES, MARGIN, REASON = "parking.steps", "parking.segments", "parking.margin", "reason"
+SEARCHED, PIECES, MARGIN, REASON = "apa.steps", "apa.segments", "apa.margin", "reason"
 
 
 class FoundPlan(NamedTuple):
@@ -42,7 +42,7 @@ def plan_scene(scenario: Scenario, passes: int = 3) -> FoundPlan:
     """Return the plan of a scene. Raises ``BadInput`` if its controller has no planner of its own."""
     names = [item.name for item in variables(scenario.models["controller"].outputs)]
     if SEARCHED not in names or any(name not in names for name in (PIECES, MARGIN, REASON)):
-        text = "this controller plans no path to the target: expected parking or parking_large"
+        text = "this controller plans no path to the target: expected apa or apa_large"
         raise BadInput(text, file=scenario.file, key="controller.system")
     done = [_run_planner(scenario, names) for _ in range(passes)]
     outputs = done[0][0]

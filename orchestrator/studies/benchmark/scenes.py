@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from fmus.contents.description import project_version
 from fmus.files import write_whole
-from orchestrator.inputs.scenario.load_scenario import scenario_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import sources_hash
@@ -17,10 +17,8 @@ from orchestrator.studies.benchmark.driving import (
     BODIES,
     KINEMATIC,
     DrivenScene,
-    SceneChanges,
     SceneRun,
     drive_scene,
-    load_scene,
 )
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
@@ -42,8 +40,6 @@ class Scene(NamedTuple):
     """Of its polygons."""
     key: str
     """Hash of all that its row depends on."""
-    system: int | None = None
-    """Drives it instead of its own."""
 
 
 class OptimumFigures(NamedTuple):
@@ -76,13 +72,8 @@ class SceneRow(NamedTuple):
         return self.plan.found and all(drive.parked for drive in self.drives.values())
 
 
-def scenes_in(
-    places: Sequence[str], bodies: Sequence[str], optimal: bool = False, system: int | None = None
-) -> list[Scene]:
-    """Return the scenes that folders, files and names mean; without any, those shipped. Raises ``BadInput``.
-
-    ``system``: drives them instead of their own.
-    """
+def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = False) -> list[Scene]:
+    """Return the scenes that folders, files and names mean; without any, those shipped. Raises ``BadInput``."""
     found: list[tuple[str, str]] = []
     for place in places:
         folder = Path(place)
@@ -96,8 +87,7 @@ def scenes_in(
     if not places:
         found = [("shipped", name) for name in valet_scenarios()]
     asked = [[BODIES[body] for body in bodies], optimal, sources_hash(), project_version()]
-    asked += [system] if system is not None else []
-    return [_scene(group, name, asked, system) for group, name in dict.fromkeys(found)]
+    return [_scene(group, name, asked) for group, name in dict.fromkeys(found)]
 
 
 def valet_scenarios() -> list[str]:
@@ -105,12 +95,12 @@ def valet_scenarios() -> list[str]:
     return [name for name in scenario_names() if name.startswith(VALET_PREFIX)]
 
 
-def _scene(group: str, name: str, asked: list[Any], system: int | None) -> Scene:
-    scenario = load_scene(name, SceneChanges(system=system))
+def _scene(group: str, name: str, asked: list[Any]) -> Scene:
+    scenario = load_scenario(name)
     if scenario.target is None:
         raise BadInput("this scenario has no target to plan a path to", file=scenario.file, key="target")
     key = hashlib.sha256(json.dumps([scenario.model_dump_json(), *asked]).encode()).hexdigest()[:32]
-    return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key, system)
+    return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key)
 
 
 def _natural(path: Path) -> tuple[int, str]:
@@ -135,11 +125,10 @@ def rows_of(
         file = out / ROWS / f"{scene.group}-{scene.name}.json"
         row = read_row(file, scene)
         if row is None:
-            changes = SceneChanges(system=scene.system)
-            plan = plan_scene(load_scene(scene.file, changes))
+            plan = plan_scene(load_scenario(scene.file))
             drives, runs = {}, {}
             for body in bodies if plan.found else ():
-                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt, changes)
+                drives[body], runs[body] = drive_scene(scene.file, body, *fmus, interrupt)
                 if interrupt.requested:
                     return
             optimum = None

@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from controller_fmu.apa import chart as apa_chart
-from controller_fmu.apa.chart import Mode
 from controller_fmu.common.slot_frame import to_world
 from controller_fmu.guo2015 import chart as guo_chart
 from controller_fmu.guo2015.legs import point_of_leg
@@ -24,6 +22,7 @@ from controller_fmu.preview.road import road_at, road_length
 from modelkit.vocabulary import Pose
 from orchestrator.presentation.drawing.picture_data import path_plans
 from orchestrator.presentation.drawing.run_figure import LINES, PATH, run_figure, style_context
+from orchestrator.studies.papers.apa_figure import DRIVING_STATES
 from orchestrator.studies.papers.result import Driven
 
 Draw = Callable[[list[Driven]], Figure]
@@ -321,10 +320,10 @@ def paths_of(runs: list[Driven]) -> Figure:
 
 
 def apa_curvature(runs: list[Driven]) -> Figure:
-    """Return Fig. 4, continuous curvature: front-wheel angle over travelled distance, with ramps instead of jumps."""
+    """Return Fig. 4: front-wheel angle over travelled distance while the system parks."""
     figure, (axis,) = grid_of(1, 1, 5.0, 2.6)
     signals = runs[0].recording.signals
-    parking = np.isin(signals["controller.apa.mode"], [Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING])
+    parking = np.isin(signals["controller.apa.state"], DRIVING_STATES)
     axis.plot(
         signals["vehicle.distance"][parking],
         np.degrees(signals["vehicle.front_wheel_angle"][parking]),
@@ -491,7 +490,7 @@ FIGURES: tuple[PaperFigure, ...] = (
         "Fig. 2",
         "range of starts",
         None,
-        note="`apa reproduce apa` prints Px_min and Px_max beside a search; the source's is a sketch",
+        note="a sketch; this system plans from where the vehicle stands",
     ),
     PaperFigure("apa", "Fig. 3", "tangent arcs", None, note="a sketch; the path driven is Fig. 1"),
     PaperFigure(
@@ -500,14 +499,14 @@ FIGURES: tuple[PaperFigure, ...] = (
         "smooth curvature",
         apa_curvature,
         ("apa-parallel",),
-        "Clothoid ramps where the source has a B-spline.",
+        "The wheel turns while the vehicle rolls; the source has a B-spline.",
     ),
     PaperFigure("apa", "Fig. 5", "perpendicular parking", paths_of, ("apa-perpendicular",)),
     PaperFigure(
         "apa",
         "States",
         "state machine",
-        partial(state_chart, rows=apa_chart.TRANSITIONS, states=Mode, guards=apa_chart.Guard),
-        note="Drawn from the table of transitions.",
+        None,
+        note="this system's chart has states of its own: docs/parking.md",
     ),
 )

@@ -14,6 +14,7 @@ from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.inputs.scenario.slot_sizes import ParkingType, library_slot_sizes, shortest_slot
+from orchestrator.studies.parking.system_signals import APA_SYSTEM
 
 ISO = library_slot_sizes("iso16787")
 BODIES = ("kinematic", "double_track")
@@ -95,7 +96,7 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     car = CARS[case.car]
     lot = random.Random(1000 + case.number + SEED_STRIDE * case.lot)
     vehicle: dict[str, Any] = {**car_parameters(car), "body": BODY[case.body]}
-    controller: dict[str, Any] = {**car_parameters(car), "system": 5}
+    controller: dict[str, Any] = {**car_parameters(car), "system": APA_SYSTEM}
     vehicle |= {
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,

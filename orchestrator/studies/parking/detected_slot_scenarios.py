@@ -20,7 +20,7 @@ from orchestrator.studies.parking.detected_slot_cases import (
     standing_of,
 )
 from orchestrator.studies.parking.imperfect import imperfect
-from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
+from orchestrator.studies.parking.system_signals import APA_SYSTEM
 
 STOP_TIME = 240.0
 PLAN_MARGIN = 0.12
@@ -44,7 +44,7 @@ def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
     target, slot = standing_of(case)
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
-        "system": PARKING_SYSTEM,
+        "system": APA_SYSTEM,
         "plan.margin": PLAN_MARGIN,
         "search.active": not reported,
         "slot.wanted": int(WANTED[case.wish]),

@@ -11,13 +11,7 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.detected_slot_cases import DetectedSlotCase, cases
 from orchestrator.studies.parking.detected_slot_scenarios import out_of, scenario_of
-from orchestrator.studies.parking.studied_systems import (
-    PARKING_SYSTEM,
-    check_system,
-    plan_measures,
-    study_name,
-    with_system,
-)
+from orchestrator.studies.parking.system_signals import plan_measures
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
@@ -34,30 +28,27 @@ def study(
     reported: bool = False,
     out: bool = False,
     ways: bool = False,
-    system: int = PARKING_SYSTEM,
 ) -> Study:
     """Return so many runs; ``reported``: the same with the map and the target told, no search: what could be parked.
 
     ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
     short one in which the system receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
-    ``system``: what drives. Raises ``BadInput`` if that cannot.
     """
-    check_system("valet-slots", system, (PARKING_SYSTEM,))
     scenarios = []
     for case in cases(runs, lot):
         scenario = out_of(case) if out else scenario_of(case, reported)
         scenario = _with_map(scenario) if reported or out else scenario
-        scenarios.append(LabelledScenario(_labels(case, ""), with_system(scenario, system)))
+        scenarios.append(LabelledScenario(_labels(case, ""), scenario))
         if ways:
-            scenarios.append(LabelledScenario(_labels(case, WAY), with_system(_planning_scenario(case), system)))
+            scenarios.append(LabelledScenario(_labels(case, WAY), _planning_scenario(case)))
     scenario, design = design_of(scenarios)
     content = {
-        "name": study_name("valet-slots", system, PARKING_SYSTEM),
+        "name": "valet-slots",
         "title": "Slot detection: kinds, angles, neighbours, walls, roads, sides, search paths",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact. No external slot.",
         "map": {"x": "angle", "y": "neighbours", "split": "end"},
     }
-    return Study(scenario, design, content, measures=plan_measures(system))
+    return Study(scenario, design, content, measures=plan_measures())
 
 
 def _planning_scenario(case: DetectedSlotCase) -> Scenario:

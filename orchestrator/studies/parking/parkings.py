@@ -14,7 +14,7 @@ from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.inputs.scenario.slot_sizes import ParkingType
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import GridCase, cases
-from orchestrator.studies.parking.studied_systems import SYSTEMS, display_measures
+from orchestrator.studies.parking.system_signals import PARKING_TIME, display_measures
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
 
@@ -31,10 +31,8 @@ SHOWN_COLUMNS = (*POSES, *(f"{corner}.{axis}" for corner in CORNERS for axis in 
 """Of the first instant at which the car stands to plan, and the slot it found is shown."""
 
 
-def measures_of(system: int) -> dict[str, Measure]:
-    """Return what is kept of each run: how long it took, and the slot shown."""
-    took = {"parking_time": Measure("last", SYSTEMS[system].parking_time)}
-    return took | display_measures(POSES, system)
+MEASURES = {"parking_time": Measure("last", PARKING_TIME), **display_measures(POSES)}
+"""What is kept of each run: how long it took, and the slot shown."""
 
 
 GBT: dict[int, str] = {

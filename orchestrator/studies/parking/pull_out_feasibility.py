@@ -13,7 +13,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.pull_out_cases import PullOutCase, start_of, things_of, vehicle_of
-from orchestrator.studies.parking.studied_systems import PARKING_SYSTEM
+from orchestrator.studies.parking.system_signals import APA_SYSTEM
 
 MIN_CLEARANCE = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""
@@ -46,7 +46,7 @@ def is_path(case: PullOutCase, goal: Pose) -> bool:
         vehicle=vehicle_of(case._replace(side=1)) | {"odometry.ideal": True},
         controller={
             **car,
-            "system": PARKING_SYSTEM,
+            "system": APA_SYSTEM,
             "search.active": False,
             "plan.min_margin": MIN_CLEARANCE,
             "plan.steps_per_sample": STEPS_PER_SAMPLE,
@@ -55,7 +55,7 @@ def is_path(case: PullOutCase, goal: Pose) -> bool:
     )
     known = scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
     recording = run_scenario(known, fmu_files("native", say), kind="native").recording
-    return bool((recording.signals["controller.parking.segments"] > 0.0).any())
+    return bool((recording.signals["controller.apa.segments"] > 0.0).any())
 
 
 def free_ahead(case: PullOutCase, end: Pose, most: float = 5.0) -> float:

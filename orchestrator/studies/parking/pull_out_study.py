@@ -25,14 +25,7 @@ from orchestrator.studies.parking.pull_out_cases import (
     vehicle_of,
 )
 from orchestrator.studies.parking.pull_out_feasibility import free_ahead, is_way_out
-from orchestrator.studies.parking.studied_systems import (
-    APA_SYSTEM,
-    PARKING_SYSTEM,
-    SYSTEMS,
-    check_system,
-    study_name,
-    with_system,
-)
+from orchestrator.studies.parking.system_signals import APA_SYSTEM, PARKING_TIME
 from orchestrator.studies.sweep.fields import find_field
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -43,6 +36,7 @@ STANDSTILL_SPEED = 0.01
 FREE_AHEAD = 3.5
 """A car is handed over with so much free ahead [m]; the assist asks for 4 m by its map."""
 MEASURES = {
+    "parking_time": Measure("last", PARKING_TIME),
     "touched.speed": Measure("first", "vehicle.speed", Instants("vehicle.contact", (1,))),
 }
 
@@ -71,7 +65,7 @@ def scenario_of(case: PullOutCase) -> Scenario:
         stop_time=STOP_TIME,
         task="drive",
         vehicle=vehicle_of(case),
-        controller={**car_parameters(CARS[case.car]), "system": 5},
+        controller={**car_parameters(CARS[case.car]), "system": APA_SYSTEM},
         faults=[
             Fault(signal="controller.driver_selection.task", kind="override", value="pull_out"),
             Fault(signal="controller.driver_selection.side", kind="override", value="left"),
@@ -80,29 +74,21 @@ def scenario_of(case: PullOutCase) -> Scenario:
     )
 
 
-def study(runs: int = 400, lot: int = 0, people: bool = False, system: int = APA_SYSTEM) -> Study:
-    """Return so many runs; ``people``: with a person on the road beside each slot; ``system``: what drives it.
-
-    Raises ``BadInput`` if that cannot.
-    """
-    check_system("apa-out", system, (APA_SYSTEM, PARKING_SYSTEM))
+def study(runs: int = 400, lot: int = 0, people: bool = False) -> Study:
+    """Return so many runs; ``people``: with a person on the road beside each slot."""
     chosen = cases(runs, lot, people)
-    scenario, design = design_of(
-        LabelledScenario(case_labels(case), with_system(scenario_of(case), system)) for case in chosen
-    )
+    scenario, design = design_of(LabelledScenario(case_labels(case), scenario_of(case)) for case in chosen)
     side = np.array([[float(side_of(case))] for case in chosen])
     field = find_field("faults[2].value", scenario)
     design = design._replace(fields=[*design.fields, field], values=np.hstack([design.values, side]))
     content = {
-        "name": study_name("apa-out", system, APA_SYSTEM),
+        "name": "apa-out",
         "title": "Pulling out of parallel and perpendicular slots, to either side",
         "description": "Finished: the driver is prompted to take over, no contact.",
         "map": {"x": "extra", "y": "behind", "split": "kind"},
         "lot": lot,
-        "system": system,
     }
-    took = {"parking_time": Measure("last", SYSTEMS[system].parking_time)}
-    return Study(scenario, design, content, measures=took | MEASURES)
+    return Study(scenario, design, content, measures=MEASURES)
 
 
 def outs(table: Table) -> list[OutRun]:

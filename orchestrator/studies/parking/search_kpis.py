@@ -23,19 +23,12 @@ from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
 from orchestrator.studies.parking.parkings import (
     FALSE_DETECTION_DISTANCE,
+    MEASURES,
     ODOMETRY,
     POSE,
     SHOWN_COLUMNS,
     corner_errors,
-    measures_of,
     pose_of,
-)
-from orchestrator.studies.parking.studied_systems import (
-    APA_SYSTEM,
-    PARKING_SYSTEM,
-    check_system,
-    study_name,
-    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Study
@@ -81,26 +74,22 @@ def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: flo
     return GridCase(number, name, kind, side, extra, beside, heading, body, speed / 3.6, shortest + extra, lot)
 
 
-def study(lot: int = 0, system: int = APA_SYSTEM) -> Study:
-    """Return the study; ``lot``: which draw of cars, headings, noise, odometry errors; ``system``: what drives it."""
-    return study_of(cases(lot), system)
+def study(lot: int = 0) -> Study:
+    """Return the study; ``lot``: which draw of cars, headings, noise and odometry errors."""
+    return study_of(cases(lot))
 
 
-def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
-    """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
-    check_system("search-kpis", system, (APA_SYSTEM, PARKING_SYSTEM))
-    scenario, design = design_of(
-        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
-    )
+def study_of(chosen: list[GridCase]) -> Study:
+    """Return the study of some cases."""
+    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
     content = {
-        "name": study_name("search-kpis", system, APA_SYSTEM),
+        "name": "search-kpis",
         "title": "Slot detection of the parking assist over kinds, sizes, speeds and distances",
         "description": "Gaps in which the vehicle fits, and others; detection, accuracy and parking time.",
         "map": {"x": "speed", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
-        "system": system,
     }
-    return Study(scenario, design, content, measures=measures_of(system), derived=SHOWN)
+    return Study(scenario, design, content, measures=MEASURES, derived=SHOWN)
 
 
 def _labels(case: GridCase) -> dict[str, str | float]:

@@ -23,13 +23,7 @@ from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.inputs.text.console import console
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.imperfect import imperfect
-from orchestrator.studies.parking.studied_systems import (
-    PARKING_SYSTEM,
-    check_system,
-    plan_measures,
-    study_name,
-    with_system,
-)
+from orchestrator.studies.parking.system_signals import APA_SYSTEM, plan_measures
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
@@ -90,7 +84,7 @@ def scenario_of(case: RowCase) -> Scenario:
         vehicle=_vehicle(case, opening, middle, depth),
         controller={
             **car_parameters(car),
-            "system": PARKING_SYSTEM,
+            "system": APA_SYSTEM,
             "search.active": False,
             "plan.margin": PLAN_MARGIN,
             "target.x": target.x,
@@ -128,23 +122,17 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     return {**car_parameters(car), **scene, **start, **errors}
 
 
-def study(lot: int = 0, lots: int = 1, system: int = PARKING_SYSTEM) -> Study:
-    """Return all cases, ``lots`` times with other draws of start, noise and errors; ``system``: what drives them.
-
-    Raises ``BadInput`` if that cannot.
-    """
-    check_system("valet-rows", system, (PARKING_SYSTEM,))
+def study(lot: int = 0, lots: int = 1) -> Study:
+    """Return all cases, ``lots`` times with other draws of start, noise and errors."""
     chosen = [case for number in range(lot, lot + lots) for case in cases(number)]
-    scenario, design = design_of(
-        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
-    )
+    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
     content = {
-        "name": study_name("valet-rows", system, PARKING_SYSTEM),
+        "name": "valet-rows",
         "title": "Rows of slots: angles, tail or nose in, roads, starts, cars",
         "description": "Parked: heading and lateral position within GB/T 41630, no contact; the slot is known.",
         "map": {"x": "angle", "y": "street", "split": "kind"},
     }
-    measures = {name: measure for name, measure in plan_measures(system).items() if name in ("plans", "margin")}
+    measures = {name: measure for name, measure in plan_measures().items() if name in ("plans", "margin")}
     return Study(scenario, design, content, measures=measures)
 
 

@@ -11,19 +11,11 @@ from orchestrator.studies.parking.cases import EXTRA, KINDS, SIDES, GridCase, ca
 from orchestrator.studies.parking.parkings import (
     FOUND,
     GBT,
+    MEASURES,
     PROJECT_LIMITS,
     PROJECT_LIMITS_BUT_MANOEUVRES,
     GridRun,
-    measures_of,
     parkings,
-)
-from orchestrator.studies.parking.studied_systems import (
-    APA_SYSTEM,
-    PARKING_SYSTEM,
-    check_system,
-    study_name,
-    system_requirements,
-    with_system,
 )
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
@@ -33,31 +25,27 @@ GBT_SETS = dict(zip(KINDS, ("gbt41630", "gbt41630-perpendicular"), strict=True))
 CLEAR = Requirement(id="clearance of the whole run", signal="min_clearance", min=0.1, source="project")
 
 
-def study(lot: int = 0, system: int = APA_SYSTEM) -> Study:
-    """Return the whole grid; ``lot``: which draw of speeds, noise and odometry errors; ``system``: what drives it."""
-    return study_of(cases(lot), system)
+def study(lot: int = 0) -> Study:
+    """Return the whole grid; ``lot``: which draw of speeds, noise and odometry errors."""
+    return study_of(cases(lot))
 
 
-def study_of(chosen: list[GridCase], system: int = APA_SYSTEM) -> Study:
-    """Return the study of some cases. Raises ``BadInput`` if ``system`` cannot drive it."""
-    check_system("apa-grid", system, (APA_SYSTEM, PARKING_SYSTEM))
-    scenario, design = design_of(
-        LabelledScenario(_labels(case), with_system(scenario_of(case), system)) for case in chosen
-    )
+def study_of(chosen: list[GridCase]) -> Study:
+    """Return the study of some cases."""
+    scenario, design = design_of(LabelledScenario(_labels(case), scenario_of(case)) for case in chosen)
     content = {
-        "name": study_name("apa-grid", system, APA_SYSTEM),
-        "title": "The parking assist over cars, slots, distances, headings and bodies",
+        "name": "apa-grid",
+        "title": "The parking system over cars, slots, distances, headings and bodies",
         "description": "Parked: within GB/T 41630 (heading, lateral position, manoeuvres if parallel), no contact.",
         "map": {"x": "extra", "y": "beside", "split": "kind"},
         "lot": chosen[0].lot,
-        "system": system,
     }
     within = {
         **{GBT[kind]: gbt_limits(name) for kind, name in GBT_SETS.items()},
-        PROJECT_LIMITS: [*system_requirements(library_requirements("apa"), system), CLEAR],
-        PROJECT_LIMITS_BUT_MANOEUVRES: [*system_requirements(library_requirements("apa-tight"), system), CLEAR],
+        PROJECT_LIMITS: [*library_requirements("apa"), CLEAR],
+        PROJECT_LIMITS_BUT_MANOEUVRES: [*library_requirements("apa-tight"), CLEAR],
     }
-    return Study(scenario, design, content, measures=measures_of(system), within=within, derived=FOUND)
+    return Study(scenario, design, content, measures=MEASURES, within=within, derived=FOUND)
 
 
 def report(table: Table, folder: Path) -> int:

@@ -69,7 +69,7 @@ class Optimum(NamedTuple):
 
 def find_optimum(scenario: Scenario, recording: Recording) -> Optimum:
     """Return the optimum near a drive that has parked. Raises ``BadInput`` if the drive has none to compare with."""
-    if scenario.target is None or "controller.parking.margin" not in recording.signals:
+    if scenario.target is None or "controller.apa.margin" not in recording.signals:
         raise BadInput("expected a drive of the parking system to a target", file=scenario.file)
     obstacles = obstacles_of_map(scenario)
     limits = limits_of(recording)
@@ -98,7 +98,7 @@ def limits_of(recording: Recording) -> MotionLimits:
         wheel_angle=parameters["car.steering.angle_limit"] / ratio,
         wheel_rate=parameters["car.steering.rate_limit"] / ratio,
         wheelbase=parameters["car.wheelbase"],
-        clearance=float(recording.signals["controller.parking.margin"].max()),
+        clearance=float(recording.signals["controller.apa.margin"].max()),
         half_length=0.5 * (front + rear),
         half_width=0.5 * parameters["car.width"],
         ahead=0.5 * (front - rear),

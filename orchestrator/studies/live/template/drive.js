@@ -62,8 +62,7 @@ class Drive {
   }
 
   plan() {
-    const key = ["path.start.x", "path.segments[1].length", "apa.move.start.x", "apa.move.start.y", "apa.move.pieces[1].length", "apa.slot.a.x", "apa.slot.length", "apa.target.x", "apa.target.y",
-      "parking.move.start.x", "parking.move.start.y", "parking.move.pieces[1].length", "parking.slot.ax", "parking.slot.depth", "parking.goal.x", "parking.goal.y"]
+    const key = ["path.start.x", "path.segments[1].length", "apa.move.start.x", "apa.move.start.y", "apa.move.pieces[1].length", "apa.slot.ax", "apa.slot.ay", "apa.slot.depth", "apa.goal.x", "apa.goal.y"]
       .map((name) => this.course.look(`controller.${name}`)).join();
     if (key === this.planKey) return;
     this.planKey = key;

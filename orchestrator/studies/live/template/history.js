@@ -1,6 +1,6 @@
 // A run of the models as scene.js draws one: rows are added while it goes on, or all at once from a whole run.
 
-const MODES = ["controller.phase", "controller.apa.mode", "controller.hsic.stage", "controller.parking.state"]; // a change of these is kept
+const MODES = ["controller.phase", "controller.apa.state", "controller.hsic.stage"]; // a change of these is kept
 const SEEN = [
   ...AXES.map((axis) => `vehicle.pose.${axis}`), "vehicle.speed", "vehicle.front_wheel_angle", "vehicle.steering_wheel_angle",
   "vehicle.gear", "vehicle.brake_pedal", "vehicle.contact", "vehicle.driver_takeover",
@@ -65,24 +65,19 @@ function wholeHistory(engine, seen, scene, whole) {
 // What the controller has in mind now: path, slot found, pose wanted; null if it has nothing.
 function planOf(engine, course, origin) {
   const at = (name) => course.look(`controller.${name}`);
-  const points = pathOf(engine, at), kind = at("apa.slot.kind"), pose = (name) => { const [x, y, heading] = AXES.map((axis) => at(`${name}.${axis}`)); return [x - origin[0], y - origin[1], heading]; };
+  const points = pathOf(engine, at), pose = (name) => { const [x, y, heading] = AXES.map((axis) => at(`${name}.${axis}`)); return [x - origin[0], y - origin[1], heading]; };
   /** @type {any} */
   const plan = { x: [], y: [] };
   for (const [x, y] of points) { plan.x.push(x - origin[0]); plan.y.push(y - origin[1]); }
-  if (kind > 0) {
-    const length = at("apa.slot.length"), depth = Math.min(at("apa.slot.depth"), 5.5), mirror = at("apa.slot.side") > 0 ? -1 : 1;
-    plan.slot = [[0, 0], [length, at("apa.slot.b_out")], [length, -depth], [0, -depth]].map(([u, v]) => moved(pose("apa.slot.a"), u, mirror * v));
-    plan.target = pose("apa.target");
-  }
-  if (at("parking.slot.type") > 0) plan.slot = opened(at, origin);
-  if (points.length && at("parking.plans") > 0) plan.target = pose("parking.goal");
+  if (at("apa.slot.type") > 0) plan.slot = opened(at, origin);
+  if (points.length && at("apa.plans") > 0) plan.target = pose("apa.goal");
   return points.length || plan.slot ? plan : null;
 }
 
 // Corners of the slot that the parking system has found: A and B of its opening, then its depth beyond both.
 function opened(at, origin) {
-  const [ax, ay, bx, by, side] = ["ax", "ay", "bx", "by", "side"].map((name) => at(`parking.slot.${name}`));
-  const depth = Math.min(at("parking.slot.depth"), 5.5), heading = Math.atan2(by - ay, bx - ax) + 0.5 * side * Math.PI;
+  const [ax, ay, bx, by, side] = ["ax", "ay", "bx", "by", "side"].map((name) => at(`apa.slot.${name}`));
+  const depth = Math.min(at("apa.slot.depth"), 5.5), heading = Math.atan2(by - ay, bx - ax) + 0.5 * side * Math.PI;
   const [a, b] = [[ax, ay], [bx, by]].map(([x, y]) => [x - origin[0], y - origin[1], heading]);
   return [moved(a, 0, 0), moved(b, 0, 0), moved(b, depth, 0), moved(a, depth, 0)];
 }
@@ -95,10 +90,10 @@ function pathOf(engine, at) {
   };
   const arcs = rows("path.segments", ["length", "curvature"]);
   if (arcs.some(([length]) => length > 0)) return driven(AXES.map((axis) => at(`path.start.${axis}`)), -1, arcs.map(([length, k]) => [length, -k, -k]));
-  const move = at("parking.plans") >= 0 ? "parking.move" : "apa.move", direction = at(`${move}.direction`);
+  const direction = at("apa.move.direction");
   if (!(direction * direction > 0)) return [];
-  const pieces = rows(`${move}.pieces`, ["length", "start_curvature", "end_curvature"]).map(([length, a, b]) => [length, direction * a, direction * b]);
-  return driven(AXES.map((axis) => at(`${move}.start.${axis}`)), direction, pieces);
+  const pieces = rows("apa.move.pieces", ["length", "start_curvature", "end_curvature"]).map(([length, a, b]) => [length, direction * a, direction * b]);
+  return driven(AXES.map((axis) => at(`apa.move.start.${axis}`)), direction, pieces);
 }
 
 // Points along pieces (length, turning per metre at the start, at the end).

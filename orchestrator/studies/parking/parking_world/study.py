@@ -1,4 +1,4 @@
-"""``apa sweep parking-world``: parking in ordinary streets and car parks, by any system, and what it prints."""
+"""``apa sweep parking-world``: parking in ordinary streets and car parks, and what it prints."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -27,7 +27,6 @@ from orchestrator.studies.parking.parking_world.outcome import (
 )
 from orchestrator.studies.parking.parking_world.scene import parameters
 from orchestrator.studies.parking.parkings import GBT
-from orchestrator.studies.parking.studied_systems import APA_SYSTEM, SYSTEMS, check_system, study_name
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
@@ -44,20 +43,18 @@ KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
 """GB/T 41630, between tyres and kerb [m]."""
 
 
-def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
-    """Return the study; ``system``: the number of ``controller.system`` that parks, on the same rows."""
-    check_system("parking-world", system, tuple(SYSTEMS))
+def study(runs: int = 2000, seed: int = 1) -> Study:
+    """Return the study: ``runs`` rows drawn from ``seed``."""
     space = Space(FACTORS, _stack)
     shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
     seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
-    shared = scenario(system)
+    shared = scenario()
     content = {
-        "name": study_name("parking-world", system, APA_SYSTEM),
+        "name": "parking-world",
         "title": "Parking beside ordinary roads and in car parks",
         "description": "Parked: within GB/T 41630 of a slot by ISO 16787, no contact.",
         "map": {"x": "extra", "y": "cars_a", "split": "kind"},
         "seed": seed,
-        "system": system,
     }
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     within = {GBT[kind]: world.limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
@@ -65,12 +62,11 @@ def study(runs: int = 2000, seed: int = 1, system: int = APA_SYSTEM) -> Study:
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, space)
 
 
-def scenario(system: int) -> Scenario:
+def scenario() -> Scenario:
     """Return what all runs share."""
     base = world.scenario()
     update = {
         "name": "parking-world",
-        "controller": {"system": system, **SYSTEMS[system].searching},
         "requirements": [*library_requirements("no-contact")],
     }
     return base.model_copy(update=update)

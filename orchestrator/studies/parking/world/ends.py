@@ -1,13 +1,13 @@
 """What became of a run in the world: a contact is its end, whatever the controller says after it."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from controller_fmu.apa.chart import Mode
+from controller_fmu.parking.chart import ParkingState
 from modelkit.geometry import Box, boxes_gap, line_box, outline
 from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.measures import Instants, Measure
@@ -19,6 +19,7 @@ from orchestrator.inputs.scenario.requirements import Requirement, library_requi
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.system_signals import PARKING_TIME
 from orchestrator.studies.parking.world.factors import NOBODY
 from orchestrator.studies.parking.world.feasibility import COLUMNS, HEARD, feasibility_columns
 from orchestrator.studies.parking.world.scene import THINGS, WHEEL
@@ -31,41 +32,32 @@ AXES = ("x", "y", "heading")
 FIRST = {
     **{f"touched.{axis}": f"vehicle.pose.{axis}" for axis in AXES},
     "touched.speed": "vehicle.speed",
-    "touched.mode": "controller.apa.mode",
+    "touched.state": "controller.apa.state",
     "touched.takeover": "vehicle.driver_takeover",
 }
 """Column -> signal at the first instant at which something is touched."""
-DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
-"""In these the car is the assist's, unless the driver has taken over."""
+BY_DRIVER = (ParkingState.STANDBY, ParkingState.SEARCHING, ParkingState.CONFIRMING, ParkingState.TAKEOVER)
+DRIVES = tuple(state for state in ParkingState if state not in BY_DRIVER)
+"""In these the system drives or holds the car, unless the driver has taken over."""
 CLAIMED = ("final heading", "final lateral position", "outline in the slot")
 NO_CONTACT = (Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched"),)
 MEASURES = {
-    "mode": Measure("last", "controller.apa.mode"),
-    "parking_time": Measure("last", "controller.apa.parking_time"),
+    "state": Measure("last", "controller.apa.state"),
+    "parking_time": Measure("last", PARKING_TIME),
     **{name: Measure("first", signal, TOUCHING) for name, signal in FIRST.items()},
     "assist.clearance": Measure(
-        "smallest", "vehicle.clearance", Instants("controller.apa.mode", tuple(map(int, DRIVES)))
+        "smallest", "vehicle.clearance", Instants("controller.apa.state", tuple(map(int, DRIVES)))
     ),
     "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
-Judge = Callable[[Mapping[str, Any], "InitialContact | None"], str]
-MEASURES_OF_ANY = {
-    **{f"touched.{axis}": Measure("first", f"vehicle.pose.{axis}", TOUCHING) for axis in AXES},
-    "touched.speed": Measure("first", "vehicle.speed", TOUCHING),
-    "touched.takeover": Measure("first", "vehicle.driver_takeover", TOUCHING),
-    "touched.steering_active": Measure("first", "controller.steering_active", TOUCHING),
-    "touched.time": Measure("time", "vehicle.speed", TOUCHING),
-}
-"""What the end of a run is told by where the system has no mode of the assist."""
 CONTACT, DRIVER, WALKED_INTO, LOW_KERB = "contact", "contact, driver drives", "walked into", "wheel at a low kerb"
-PARKED, FALSE, FAILED, UNUSED, ENDLESS = "parked", "false parked", "gave up", "not in use", "endless"
+PARKED, FALSE, FAILED, ENDLESS = "parked", "false parked", "gave up", "endless"
 ENDS = {
-    CONTACT: "touched something while the assist drives, or while it holds the car",
+    CONTACT: "touched something while the system drives, or while it holds the car",
     FALSE: "claims to be parked outside the slot or beyond GB/T 41630",
     ENDLESS: "neither parked nor given up at the stop time",
     PARKED: "parked within GB/T 41630, nothing touched",
     FAILED: "gave up, nothing touched",
-    UNUSED: "the driver was too fast for the assist to begin",
     DRIVER: "touched something while the driver drives",
     WALKED_INTO: "somebody, or a neighbour, moved into the car: it would have touched it standing, too",
     LOW_KERB: "a tyre against a kerb that is too low to be heard; nothing of the body touches it",
@@ -73,14 +65,13 @@ ENDS = {
 """How a run in the world ends, the worst first."""
 
 
-def _ends(columns: Columns, judge: Judge | None = None) -> Mapping[str, Array]:
+def _ends(columns: Columns) -> Mapping[str, Array]:
     """Return the end of each run, what was touched first, and whether the run asks for what can be had."""
     rows = [
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
     touched = [None if math.isnan(row["touched.x"]) else first_contact(row) for row in rows]
-    judge = end_of if judge is None else judge
-    found = [judge(row, first) for row, first in zip(rows, touched, strict=True)]
+    found = [end_of(row, first) for row, first in zip(rows, touched, strict=True)]
     into = [end == CONTACT and is_driven_into(row, first) for row, end, first in zip(rows, found, touched, strict=True)]
     return {
         **feasibility_columns(columns),
@@ -88,11 +79,6 @@ def _ends(columns: Columns, judge: Judge | None = None) -> Mapping[str, Array]:
         "end": np.array(found, dtype=object),
         "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
     }
-
-
-def _ends_of_any(columns: Columns) -> Mapping[str, Array]:
-    """Return the same of a system without the assist's modes."""
-    return _ends(columns, end_of_any)
 
 
 def _plain(values: Any) -> list[Any]:
@@ -110,21 +96,8 @@ class InitialContact(NamedTuple):
 def end_of(row: Mapping[str, Any], touched: InitialContact | None) -> str:
     """Return how a run ended, one of ``ENDS``."""
     if touched is not None:
-        driven = row["touched.mode"] in DRIVES and not row["touched.takeover"]
+        driven = row["touched.state"] in DRIVES and not row["touched.takeover"]
         low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
-        return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
-    if row["mode"] == Mode.FAIL:
-        return FAILED if row["reason"] != "none" else ENDLESS
-    if row["mode"] != Mode.PARKING_FINISH:
-        return UNUSED if row["mode"] == Mode.STANDBY else ENDLESS
-    return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
-
-
-def end_of_any(row: Mapping[str, Any], touched: InitialContact | None) -> str:
-    """Return how a run of any system ended, one of ``ENDS``: who steers says who drives, the outcome what it claims."""
-    if touched is not None:
-        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
-        driven = row["touched.steering_active"] and not row["touched.takeover"]
         return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
     if row["outcome"] == "parked" or row["reason"].startswith(BEYOND):
         return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
@@ -229,9 +202,9 @@ def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
 
 
 def _clear(columns: Columns) -> Array:
-    """Return how near [m] the car has come to anything since the assist has it; 0 or less: touched, or not measured."""
-    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)  # the assist has never had the car
-    unknown = np.isnan(np.asarray(columns["mode"])) | np.isnan(np.asarray(columns["min_clearance"]))
+    """Return how near [m] the car has come to anything since the system has it; 0 or less: touched, or not measured."""
+    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)  # the system has never had the car
+    unknown = np.isnan(np.asarray(columns["state"])) | np.isnan(np.asarray(columns["min_clearance"]))
     ends = np.asarray(columns["end"])
     touched, nearest = ends == CONTACT, np.where(ends == LOW_KERB, LARGEST, nearest)
     margins = np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST))
@@ -246,17 +219,16 @@ def _honest(columns: Columns) -> Array:
     least = np.minimum(np.min(shares, axis=0), 1.0)
     ends = np.asarray(columns["end"])
     found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))
-    return np.asarray(np.where(np.isnan(np.asarray(columns["mode"])), -1.0, found))
+    return np.asarray(np.where(np.isnan(np.asarray(columns["state"])), -1.0, found))
 
 
 LEAST, LARGEST = 1e-4, 0.5
 """Margins of runs that have not touched anything [m]."""
 GOALS = (
-    Objective("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
+    Objective("contact", "nothing is touched while the system has the car", NO_CONTACT, _clear),
     Objective("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
 INTO = {"driven_into": Metric("1", "1: contact at standstill caused by a moving obstacle")}
 FOUND = DerivedParameter(
     {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
 )
-FOUND_BY_ANY = FOUND._replace(make=_ends_of_any)

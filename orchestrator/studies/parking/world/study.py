@@ -1,4 +1,4 @@
-"""The parking assist in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
+"""The parking system in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -17,18 +17,16 @@ from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS, gbt_limits
 from orchestrator.studies.parking.parkings import GBT
-from orchestrator.studies.parking.studied_systems import APA_SYSTEM, SYSTEMS, check_system, study_name
 from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.system_signals import APA_SYSTEM
 from orchestrator.studies.parking.world.ends import (
     CONTACT,
     ENDLESS,
     ENDS,
     FALSE,
     FOUND,
-    FOUND_BY_ANY,
     GOALS,
     MEASURES,
-    MEASURES_OF_ANY,
     PARKED,
     WALKED_INTO,
 )
@@ -47,38 +45,33 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA_SYSTEM) -> Study:
-    """Return the world; ``mild``: 1 for half the ranges; ``system``: number of ``controller.system``, same rows."""
-    check_system("apa-world", system, tuple(SYSTEMS))
+def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
+    """Return the world; ``mild``: 1 for half the ranges."""
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
     content: dict[str, Any] = {
         "name": "apa-world-mild" if mild else "apa-world",
-        "title": "The parking assist with all disturbances at once",
+        "title": "The parking system with all disturbances at once",
         "description": "Parked: within GB/T 41630 (heading, lateral position, outline, manoeuvres), no contact.",
         "map": {"x": "extra", "y": "heading", "split": "kind"},
         "seed": seed,
         "mild": mild,
     }
-    shared = scenario(system)
+    shared = scenario()
     design = Design(fields(), world.values(shares, seeds), seeds, world.values_by_name(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
-    if system != APA_SYSTEM:
-        content |= {"name": study_name(content["name"], system, APA_SYSTEM), "system": system}
-        return Study(shared, design, content, seeded, MEASURES_OF_ANY, within, FOUND_BY_ANY, world)
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
 
 def scenario(system: int = APA_SYSTEM) -> Scenario:
-    """Return what all runs share; the system is told neither slot nor target."""
-    searching = SYSTEMS[system].searching if system in SYSTEMS else {}
+    """Return what all runs share; the system knows neither slot nor target."""
     return Scenario(
         name="apa-world",
         stop_time=STOP_TIME,
         vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
-        controller={"system": system, **searching},
+        controller={"system": system},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)
             for number in range(1, SENSOR_COUNT + 1)

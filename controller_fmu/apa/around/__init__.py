@@ -1,1 +1,0 @@
-"""What stands around the car while it parks: map, guard, and what they say."""

@@ -1,1 +1,0 @@
-"""Ways of the car: which moves lead into a slot, and along which pieces."""

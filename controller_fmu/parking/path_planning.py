@@ -45,7 +45,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
-from controller_fmu.parking.slots.goal import goal_pose, least_depth, most_overhang, overhang_of
+from controller_fmu.parking.slots.goal import goal_pose, kerb_shift, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.slot_filter import slot_of_filter
 from controller_fmu.parking.state import ParkingMemory, SearchProgress
 from modelkit.car import largest_curvature
@@ -205,18 +205,21 @@ def corrected_slot(
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
     """Return whether a vehicle at ``pose`` is surely parked, as far as the slot is known, if not as finely as meant.
 
-    Beside a kerb, too, it is so by where it stands beside its neighbours.
+    Beside a kerb, too, it is so by where it stands beside its neighbours. Where the kerb leaves no pose that is surer
+    the intended one counts.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     room = 0.5 * (slot.ahead.start - slot.behind.end)
     along = params.final.accepted
     sigma = slot.middle_sigma
     flush = slot
+    intended = 0.0
     if slot.type == SlotType.PARALLEL:
         along = max(along, room - outline.half_length)
         sigma = slot.front_sigma
         flush = slot._replace(depth=UNKNOWN_DEPTH)
-    across = params.final.accepted - params.slot.confidence * sigma
+        intended = abs(kerb_shift(slot, outline, params.slot)) + abs(params.drive.rolling_offset)
+    across = max(params.final.accepted - params.slot.confidence * sigma, min(intended, params.final.accepted))
     turn = params.final.accepted_heading - params.slot.confidence * slot.row.heading_sigma
     near = is_near(pose, goal_pose(flush, outline, params.slot), along, across, turn)
     return near and overhang_of(slot, outline, pose) < most_overhang(slot, outline, params.slot)

@@ -136,6 +136,6 @@ def test_a_folder_is_imported(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     out = tmp_path / "out"
     assert main(["import", "parkbench", str(tmp_path / "in"), "--out", str(out)]) == 0
     assert capsys.readouterr().out.split() == [str(out / "a.yaml"), str(out / "b.yaml")]
-    assert load_scenario(str(out / "a.yaml")).controller["system"] == 8
+    assert load_scenario(str(out / "a.yaml")).controller["system"] == 5
     assert main(["import", "tpcap", str(tmp_path / "in"), "--out", str(out)]) == 2
     assert r"no file *.csv in this folder" in capsys.readouterr().err

@@ -171,7 +171,7 @@ def test_the_command_says_it_as_text_json_junit_and_page(tmp_path: Path, capsys:
     assert main(words) == 1
     printed = capsys.readouterr().out
     assert "gear at the end" in printed
-    assert "apa-parallel: gear P at the end: vehicle.gear: REVERSE" in " ".join(printed.split())
+    assert "apa-parallel: gear P at the end: vehicle.gear: DRIVE" in " ".join(printed.split())
     root = ElementTree.parse(out / "junit.xml").getroot()
     assert [suite.get("name") for suite in root] == ["GB/T 47031-2026", "Euro NCAP"]
     assert root.find(".//testcase[@name='4.2.1: gear at the end']/failure") is not None

@@ -157,10 +157,10 @@ def test_a_known_goal_is_planned_to_without_a_search(switched_on: bool) -> None:
 
 @pytest.mark.parametrize(
     ("beyond", "shift"),
-    [(0.08, -0.03), (0.2, 0.0), (0.29, 0.0), (0.36, 0.07), (0.44, 0.1), (0.5, 0.0), (0.9, 0.0)],
+    [(0.08, -0.02), (0.2, 0.0), (0.29, 0.0), (0.36, 0.06), (0.44, 0.1), (0.5, 0.0), (0.9, 0.0)],
 )
 def test_the_vehicle_stands_beside_a_kerb_as_gbt_wants(beyond: float, shift: float) -> None:
-    """Flush with its neighbours it is ``beyond`` [m] from the kerb: nearest to that it stands 5 to 35 cm off by 6 cm.
+    """Flush with its neighbours it is ``beyond`` [m] from the kerb: nearest to that it stands 5 to 35 cm off by 5 cm.
 
     Their line is known to 2.5 cm: two sigma less than GB/T's 0.15 m.
     """

@@ -83,8 +83,6 @@ class SlotCandidate(NamedTuple):
     front_sigma: float = 0.0
     """Standard deviation of that line across the row [m], and of the middle of the gap along it."""
     middle_sigma: float = 0.0
-    depth_sigma: float = 0.03
-    """Standard deviation of what it ends at across the row [m]: of a surface from a straight line."""
     slope: float = 0.0
     """Of the road against the frame's x axis: in an angled row the frame is square to the direction into the slot."""
     is_nose_in: bool = False

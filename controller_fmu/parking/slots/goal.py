@@ -28,12 +28,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
     """
     middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
     if candidate.type == SlotType.PARALLEL:
-        left = candidate.depth - 2.0 * outline.half_width
-        unsure = params.confidence * candidate.depth_sigma
-        shift = min(left - params.kerb_min - unsure, 0.0)
-        if params.kerb_max < left + unsure and left < params.kerb_max + params.stand_out:
-            shift = min(left + unsure - params.kerb_max, max(most_overhang(candidate, outline, params), 0.0))
-        deep = candidate.front + outline.half_width + shift
+        deep = candidate.front + outline.half_width + kerb_shift(candidate, outline, params)
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
@@ -45,6 +40,14 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
     centre = row_point(candidate.row, middle, deep)
     ahead = outline.centre_ahead
     return Pose(centre.x - ahead * math.cos(heading), centre.y - ahead * math.sin(heading), heading)
+
+
+def kerb_shift(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
+    """Return how far [m] into the slot the kerb moves the goal from the neighbours' line; negative: out of it."""
+    left = candidate.depth - 2.0 * outline.half_width
+    if params.kerb_max < left and left < params.kerb_max + params.stand_out:
+        return min(left - params.kerb_max, max(most_overhang(candidate, outline, params), 0.0))
+    return min(left - params.kerb_min, 0.0)
 
 
 def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:

@@ -26,8 +26,12 @@ class SlotParams(NamedTuple):
     distance_behind: Annotated[
         float, Signal("m", "to the end of a slot: the monitor's distance, two standard deviations", 0.05, 2.0, HOUSE)
     ] = 0.08
-    kerb_min: Annotated[float, Signal("m", "least distance to a kerb beside", 0.0, 1.0, GBT)] = 0.05
-    kerb_max: Annotated[float, Signal("m", "largest distance to a kerb beside", 0.0, 1.0, GBT)] = 0.35
+    kerb_min: Annotated[
+        float, Signal("m", "least distance to a kerb beside: 5 cm, and 5 cm for errors", 0.0, 1.0, GBT)
+    ] = 0.1
+    kerb_max: Annotated[
+        float, Signal("m", "largest distance to a kerb beside: 35 cm, less 5 cm for errors", 0.0, 1.0, GBT)
+    ] = 0.3
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
     distance: Annotated[float, Signal("m", "longest distance searched", 1.0, 1000.0, HOUSE)] = 60.0
     confirm_time: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0

@@ -311,13 +311,10 @@ def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float
     share = _behind_share(slot)
     turned = _sum_variance(covariance, Pose(0.0, 0.0, share), Pose(0.0, 0.0, 1.0 - share))
     row_sigma = slot.row.heading_sigma
-    is_ended = slot.depth < UNKNOWN_DEPTH
-    end_sigma = math.sqrt(covariance[END_INDEX * STATE_COUNT + END_INDEX])
     return slot._replace(
         row=slot.row._replace(heading_sigma=math.sqrt(row_sigma * row_sigma + turned)),
         behind=slot.behind._replace(end_sigma=_sigma_along(covariance, 0, heading)),
         ahead=slot.ahead._replace(start_sigma=_sigma_along(covariance, AHEAD_OFFSET, heading)),
-        depth_sigma=end_sigma if is_ended else slot.depth_sigma,
         front_sigma=math.sqrt(_sum_variance(covariance, across, across) + shared),
         middle_sigma=math.sqrt(_sum_variance(covariance, along, along) + shared),
     )

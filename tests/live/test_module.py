@@ -12,7 +12,6 @@ import pytest
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import last_exchange
 from orchestrator.simulation.cosim.fmu_files import fmu_files
@@ -85,13 +84,18 @@ def test_a_run_ends_at_its_stop_time_also_between_two_steps(run_of_page: Any) ->
 
 
 @pytest.fixture(scope="module")
-def static(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def static_of(tmp_path_factory: pytest.TempPathFactory) -> Any:
     main = (Path(__file__).parent / "static.c").read_text(encoding="utf-8")
-    built = live_library(MODELS, STATIC, ".program", {"main_unit.c": main})
-    program = tmp_path_factory.mktemp("static") / "live"
-    program.write_bytes(built.read_bytes())
-    program.chmod(0o755)
-    return program
+
+    @cache
+    def program_of(models: Any) -> Path:
+        built = live_library(dict(models), STATIC, ".program", {"main_unit.c": main})
+        program = tmp_path_factory.mktemp("static") / "live"
+        program.write_bytes(built.read_bytes())
+        program.chmod(0o755)
+        return program
+
+    return lambda scenario: program_of(tuple(scenario.models.items()))
 
 
 @pytest.mark.release
@@ -99,7 +103,7 @@ def static(tmp_path_factory: pytest.TempPathFactory) -> Any:
     "name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "fault-pose-noise", GROWS]
 )
 def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
-    name: Any, static: Any, run_of_page: Any
+    name: Any, static_of: Any, run_of_page: Any
 ) -> None:
     scenario = load_scenario(name)
     names, end, lines = run_of_page(scenario)
@@ -112,7 +116,7 @@ def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
         [room, 1 + len(names)],
     ]
     sent = b"".join(np.array([len(part), *part], dtype=float).tobytes() for part in parts)
-    done = subprocess.run([static], input=sent, capture_output=True, check=True)
+    done = subprocess.run([static_of(scenario)], input=sent, capture_output=True, check=True)
     found = np.frombuffer(done.stdout, dtype=float)
     assert found[0] == end
     assert found[2:].tobytes() == lines.tobytes()

@@ -44,6 +44,12 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return written(tmp_path_factory.mktemp("live"), page_scenarios())
 
 
+@pytest.fixture(scope="module")
+def apa_file(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The page of the parking system, whose controller is an FMU of its own."""
+    return written(tmp_path_factory.mktemp("live-apa"), page_scenarios("apa"))
+
+
 def written(folder: Any, scenarios: Any) -> Any:
     path = folder / "live.html"
     path.write_text(live_page(scenarios), encoding="utf-8")
@@ -53,7 +59,17 @@ def written(folder: Any, scenarios: Any) -> Any:
 
 @pytest.fixture
 def page(file: Any, show: Any) -> Iterator[Any]:
-    shown, seen = show(file, "#s=guo2015-case4", 1440, 900)
+    yield from watched(show, file, "guo2015-case4")
+
+
+@pytest.fixture
+def apa_page(apa_file: Any, show: Any) -> Iterator[Any]:
+    yield from watched(show, apa_file, "apa-parallel")
+
+
+def watched(show: Any, file: Any, scenario: Any) -> Iterator[Any]:
+    """Show a page that, when its test is over, has reported nothing and asked for nothing from outside."""
+    shown, seen = show(file, f"#s={scenario}", 1440, 900)
     yield shown
     assert seen.console == []
     assert [url for url in seen.requests if not url.startswith(("file:", "data:", "blob:"))] == []
@@ -64,17 +80,15 @@ def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
 
 
 @pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute
-def test_the_parking_system_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
-    scenarios = page_scenarios("apa")
-    page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
-    page.fill("#search", "scene.boxes[6].y")
-    page.click("#found button")
-    fill(page, "vehicle.scene.boxes[6].y", "4")  # a wall, which the controller's map contains
-    page.wait_for_function("() => !window.live.isDue")
-    agrees(ghost(page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
-    assert ghost(page)["manoeuvres"] == 3
-    as_on_record(page, scenarios)
-    assert seen.console == []
+def test_the_parking_system_has_a_page_of_its_own(apa_page: Any) -> None:
+    apa_page.select_option("#scenario", "valet-perpendicular")
+    apa_page.fill("#search", "scene.boxes[6].y")
+    apa_page.click("#found button")
+    fill(apa_page, "vehicle.scene.boxes[6].y", "4")  # a wall, which the controller's map contains
+    apa_page.wait_for_function("() => !window.live.isDue")
+    agrees(ghost(apa_page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
+    assert ghost(apa_page)["manoeuvres"] == 5
+    as_on_record(apa_page, page_scenarios("apa"))
 
 
 def as_on_record(page: Any, scenarios: Any) -> None:
@@ -104,18 +118,13 @@ TO_TRY = [
     ("guo2015-case1-105", {"controller.guo2015.k2": 0.3}, "not_parked", 1),
     ("guo2015-case1-105", {"vehicle.driver.profile[1].speed": 1.0}, "not_parked", 1),
     ("guo2015-case1-105", {"vehicle.driver.profile[1].speed": 1.0, "car.steering.rate_limit": 45.0}, "parked", 1),
-    ("apa-parallel", {"vehicle.scene.boxes[2].x": 8.0}, "parked", 3),
-    ("apa-parallel", {"vehicle.scene.boxes[2].x": 7.4}, "not_parked", 3),
-    ("apa-parallel", {"vehicle.scene.boxes[2].x": 2.8}, "failed", 0),
-    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.02}, "parked", 2),
-    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 6),
     ("hsic", {"vehicle.start.y": 5.0}, "parked", 1),
     ("hsic", {"vehicle.start.y": 5.5}, "not_parked", 1),
     ("hsic", {"vehicle.steering.lag": 0.4}, "parked", 1),
-    ("hsic", {"vehicle.steering.lag": 0.8}, "failed", 0),
+    ("hsic", {"vehicle.steering.lag": 0.8}, "steering_fault", 0),
     ("preview", {"controller.preview.set_speed": 11.0}, "finished", 0),
-    ("preview", {"controller.preview.set_speed": 12.0}, "failed", 0),
-    ("preview", {"controller.preview.set_speed": 20.0}, "failed", 0),
+    ("preview", {"controller.preview.set_speed": 12.0}, "bad_parameter", 0),
+    ("preview", {"controller.preview.set_speed": 20.0}, "bad_parameter", 0),
     ("zhang2022", {"vehicle.start.x": 8.0}, "parked", 1),
     ("zhang2022", {"vehicle.steering.lag": 0.1}, "parked", 1),
     ("zhang2022", {"vehicle.steering.lag": 0.2}, "not_parked", 1),
@@ -123,18 +132,29 @@ TO_TRY = [
     ("adaptive", {"vehicle.driver.reaction_delay": 1.2}, "parked", 3),
     ("adaptive", {"vehicle.driver.profile[1].speed": 2.25}, "parked", 7),
 ]
-"""What the pages of the laws say to try."""
+"""What the pages of the laws say to try: outcome, or reason of a failure, and manoeuvres."""
+TO_TRY_OF_APA = [
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 8.0}, "not_parked", 4),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 7.4}, "not_parked", 6),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 6.0}, "slot_too_short", 0),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 2.8}, "no_slot", 0),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.02}, "parked", 2),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "no_slot", 0),
+    ("valet-perpendicular", {"vehicle.scene.boxes[6].y": 4.0}, "parked", 5),
+]
+"""What the page of the parking system says to try."""
 TRIED = """(all) => all.map(([name, changes]) => {
   const { lab } = window.live;
   lab.load(name, changes);
-  const { outcome, numbers } = lab.ghost();
-  return [outcome, numbers.manoeuvres];
+  const { outcome, reason, numbers } = lab.ghost();
+  return [outcome === "failed" ? reason : outcome, numbers.manoeuvres];
 })"""
 
 
-def test_what_the_laws_pages_say_to_try_comes_out_so(page: Any) -> None:
-    found = page.evaluate(TRIED, [item[:2] for item in TO_TRY])
-    assert [tuple(item) for item in found] == [item[2:] for item in TO_TRY]
+def test_what_the_laws_pages_say_to_try_comes_out_so(page: Any, apa_page: Any) -> None:
+    for shown, to_try in ((page, TO_TRY), (apa_page, TO_TRY_OF_APA)):
+        found = shown.evaluate(TRIED, [item[:2] for item in to_try])
+        assert [tuple(item) for item in found] == [item[2:] for item in to_try]
 
 
 def test_keys_drive_to_parked(page: Any) -> None:
@@ -321,30 +341,34 @@ def follows(page: Any, path: Path) -> Any:
     return scenario
 
 
-def test_a_slot_that_is_dragged_takes_neighbours_kerb_and_target_along(page: Any, tmp_path: Path) -> None:
-    page.select_option("#scenario", "apa-parallel")
+def test_a_slot_that_is_dragged_takes_neighbours_kerb_and_target_along(apa_page: Any, tmp_path: Path) -> None:
     usual = load_scenario("apa-parallel")
     assert usual.slot is not None
-    drag(page, "slot", 0.5, -0.25)
-    moved = follows(page, tmp_path / "dragged.yaml")
+    drag(apa_page, "slot", 0.5, -0.25)
+    moved = follows(apa_page, tmp_path / "dragged.yaml")
     assert moved.slot.x == pytest.approx(usual.slot.x + 0.5, abs=0.05)
     for name in ("scene.boxes[1].x", "scene.boxes[2].x", "scene.kerbs[1].x1"):
         assert moved.vehicle[name] - usual.vehicle[name] == pytest.approx(moved.slot.x - usual.slot.x)
-    fill(page, "slot_layout.length", "7")
-    assert follows(page, tmp_path / "longer.yaml").slot.length == 7.0
-    drag(page, "target", 0.25, 0.0)
-    assert follows(page, tmp_path / "target.yaml").target.x > moved.target.x + 0.5
-    page.evaluate("() => { live.lab.situation.set('car.width', 1.7); live.changed(); }")
-    assert follows(page, tmp_path / "car.yaml").vehicle["car.width"] == 1.7
-    assert page.evaluate("() => live.lab.situation.set('slot.length', 4)").startswith("slot.length follows slot_layout")
+    fill(apa_page, "slot_layout.length", "7")
+    assert follows(apa_page, tmp_path / "longer.yaml").slot.length == 7.0
+    drag(apa_page, "target", 0.25, 0.0)
+    assert follows(apa_page, tmp_path / "target.yaml").target.x > moved.target.x + 0.5
+    apa_page.evaluate("() => { live.lab.situation.set('car.width', 1.7); live.changed(); }")
+    assert follows(apa_page, tmp_path / "car.yaml").vehicle["car.width"] == 1.7
+    refused = apa_page.evaluate("() => live.lab.situation.set('slot.length', 4)")
+    assert refused.startswith("slot.length follows slot_layout")
 
 
-def test_the_handle_of_a_slot_says_what_it_takes_along(page: Any) -> None:
-    for name, said in (("guo2015-case4", "no slot_layout"), ("apa-parallel", "with its neighbours")):
-        page.select_option("#scenario", name)
-        page.evaluate("() => live.draw(performance.now())")
-        page.mouse.move(*handle(page, "slot"))
-        assert said in page.get_attribute("#view", "title")
+def test_the_handle_of_a_slot_says_what_it_takes_along(page: Any, apa_page: Any) -> None:
+    for shown, name, said in (
+        (page, "guo2015-case4", "no slot_layout"),
+        (apa_page, "valet-perpendicular", "no slot_layout"),
+        (apa_page, "apa-parallel", "with its neighbours"),
+    ):
+        shown.select_option("#scenario", name)
+        shown.evaluate("() => live.draw(performance.now())")
+        shown.mouse.move(*handle(shown, "slot"))
+        assert said in shown.get_attribute("#view", "title")
 
 
 def test_an_angled_row_follows_its_layout(tmp_path: Path, show: Any) -> None:
@@ -439,19 +463,45 @@ def test_the_chart_shows_the_state_and_how_it_came(page: Any) -> None:
     assert guards.count() == 0
     page.focus('[data-state="STOP"]')
     assert page.text_content("#chart-said").startswith("stop:")
-    page.select_option("#scenario", "apa-parallel")
-    page.evaluate(UNTIL, ["controller.apa.mode", "STANDBY"])
+    page.select_option("#scenario", "adaptive")
+    page.evaluate(UNTIL, ["controller.phase", "PATH_TRACKING"])
     page.wait_for_timeout(100)
-    taken = page.locator(".deciding .holds").text_content()
-    assert taken == "\u2713 holdsswitched on \u2192 standby, taken"
-    page.evaluate("live.drive.go()")
-    page.wait_for_timeout(100)
+    assert page.locator('[data-state="TO_Q2"]').count() == 0
     assert guards.all_text_contents() == [
-        "\u2013 notswitched off \u2192 off: the switch is off",
-        "\u2013 notfault \u2192 fail: there is a reason to fail",
-        "\u2013 notslot given \u2192 parking space appears: the car stands, and the slot is known without a "
-        "search: given, from before, or the one to pull out of",
-        "\u2713 holdsready \u2192 parking space search, taken: slow enough to search",
+        "\u2013 nottakeover \u2192 takeover",
+        "\u2013 notfault \u2192 failed",
+        "\u2713 holdswheel set to reverse \u2192 path tracking, taken",
+        "\u2013 notwheel set to go ahead \u2192 to Q4",
+    ]
+
+
+def test_the_chart_says_what_was_tested_before_what_was_taken(apa_page: Any) -> None:
+    apa_page.click("#chart-tab")
+    apa_page.select_option("#scenario", "valet-perpendicular")
+    taken, guards = apa_page.locator(".deciding .holds"), apa_page.locator(".deciding li")
+    apa_page.evaluate(UNTIL, ["controller.apa.state", "PLANNING"])
+    apa_page.wait_for_timeout(100)
+    assert taken.text_content().startswith("\u2713 holdsgoal known \u2192 planning, taken")
+    apa_page.select_option("#scenario", "apa-parallel")
+    apa_page.evaluate(UNTIL, ["controller.apa.state", "SEARCHING"])
+    apa_page.wait_for_timeout(100)
+    assert taken.all_text_contents() == ["\u2713 holdsswitched on \u2192 searching, taken"]
+    apa_page.evaluate("live.drive.go()")
+    apa_page.wait_for_timeout(100)
+    assert taken.count() == 0
+    assert guards.all_text_contents() == [
+        "\u2013 notswitched off \u2192 standby",
+        "\u2013 notfault \u2192 failed",
+        "\u2013 notslot found \u2192 confirming: a slot is found and the vehicle stands",
+    ]
+    apa_page.evaluate(UNTIL, ["controller.apa.state", "STEERING"])
+    apa_page.wait_for_timeout(100)
+    assert guards.all_text_contents() == [
+        "\u2013 notswitched off \u2192 standby",
+        "\u2013 notfault \u2192 failed",
+        "\u2013 notslot rejected \u2192 searching: no path into the slot shown",
+        "\u2013 notdriven on \u2192 searching: the driver drove on instead of confirming, or chose another slot",
+        "\u2713 holdsconfirmed \u2192 steering, taken",
     ]
 
 

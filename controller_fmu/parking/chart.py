@@ -76,7 +76,7 @@ class Condition(IntEnum):
     WHEEL_TURNED = 9
     """The wheel is where the segment needs it, and the way is free."""
     MUST_STOP = 10
-    """The next planned stop, a blocked way, or a lost path is near."""
+    """The next planned stop, an obstacle, or a lost path is near."""
     REPLAN = 11
     """Standing off the path, or blocked for long."""
     AT_END = 12

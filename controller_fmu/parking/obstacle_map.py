@@ -11,11 +11,11 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex, next_index
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.predicted_range import range_to_polygons
-from controller_fmu.parking.measurement.sensor import SENSORS, SensorPose
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS, SensorPose
 from controller_fmu.parking.monitor.collision_monitor import (
     EchoObstacle,
     landmark_distance,
@@ -29,8 +29,8 @@ from modelkit.geometry import Point
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-LANDMARK_VERTICES = 2 * LANDMARKS
-REMEMBERED = 8
+LANDMARK_VERTICES = 2 * MAX_LANDMARKS
+MAX_REMEMBERED = 8
 """Unexplained echoes that are kept for planning."""
 ROW_EXTENSION = 10.0
 """The row and the road go on for this far [m]."""
@@ -62,8 +62,8 @@ class Quad(NamedTuple):
 class KnownEchoes(NamedTuple):
     """Unexplained echoes that are kept for planning, and what the sensors measure now."""
 
-    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * REMEMBERED
-    present: tuple[EchoObstacle, ...] = (EchoObstacle(),) * SENSORS
+    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_REMEMBERED
+    present: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_SENSORS
 
 
 class VehiclePlace(NamedTuple):
@@ -213,22 +213,22 @@ def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandida
         x = quad.x0 if corner == 0 or corner == 3 else quad.x1
         y = (quad.y0 if corner < 2 else quad.y1) + slot.row.side * quad.slope * (x - quad.pivot)
         point = point_from_frame(x, slot.row.side * y, slot.row.frame)
-        return Vertex(point.x, point.y, LANDMARKS + 1 + index)
+        return Vertex(point.x, point.y, MAX_LANDMARKS + 1 + index)
     at = index - SLOT_QUADS
-    if at >= REMEMBERED + SENSORS:
+    if at >= MAX_REMEMBERED + MAX_SENSORS:
         return Vertex()
-    echo = echoes.remembered[min(max(at, 0), REMEMBERED - 1)]
-    if at >= REMEMBERED:
-        echo = echoes.present[min(at - REMEMBERED, SENSORS - 1)]
-    if not echo.is_present or (at >= REMEMBERED and echo.is_unexplained):
+    echo = echoes.remembered[min(max(at, 0), MAX_REMEMBERED - 1)]
+    if at >= MAX_REMEMBERED:
+        echo = echoes.present[min(at - MAX_REMEMBERED, MAX_SENSORS - 1)]
+    if not echo.is_present or (at >= MAX_REMEMBERED and echo.is_unexplained):
         return Vertex()
     if not echo.is_unexplained:
         end = side_start(echo) if corner < 2 else side_end(echo)
-        return Vertex(end.x, end.y, LANDMARKS + 1 + index)
+        return Vertex(end.x, end.y, MAX_LANDMARKS + 1 + index)
     half = 0.5 * ECHO_SIZE
     dx = -half if corner == 0 or corner == 3 else half
     dy = -half if corner < 2 else half
-    return Vertex(echo.x + dx, echo.y + dy, LANDMARKS + 1 + index)
+    return Vertex(echo.x + dx, echo.y + dy, MAX_LANDMARKS + 1 + index)
 
 
 def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tuple[Quad, ...]:

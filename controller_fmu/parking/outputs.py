@@ -4,10 +4,10 @@ from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.interface import PlannedPiece, Reason
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
-from controller_fmu.parking.map.landmark import LANDMARKS
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.measurement.cycle import seconds
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import is_silent
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.planning.planner import PathSegment
@@ -38,7 +38,7 @@ PHASE_OF_STATE = (
     ParkingPhase.TAKEOVER,
 )
 """One for each member of ParkingState, in its order."""
-MOVED = 0.05
+MIN_MOVEMENT = 0.05
 """A search has begun when the vehicle has moved this far [m]."""
 
 
@@ -81,7 +81,7 @@ def prompt_of(memory: ParkingMemory, params: ParkingParams) -> int:
     if state == ParkingState.SEARCHING:
         if memory.search.slot.type != SlotType.NONE:
             return Prompt.STOP
-        begun = memory.search.distance > MOVED and memory.search.waited == 0
+        begun = memory.search.distance > MIN_MOVEMENT and memory.search.waited == 0
         return Prompt.SLOW_DOWN if begun else Prompt.FORWARD
     if is_driver_driving(params) and state not in (ParkingState.STANDBY, ParkingState.TAKEOVER):
         if state != ParkingState.DRIVING:
@@ -100,7 +100,7 @@ def alarm_of(memory: ParkingMemory) -> int:
         return ParkingAlarm.TAKEN_OVER
     if memory.verdict.is_blocked:
         return ParkingAlarm.OBSTACLE
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         if is_silent(memory.perception.local_map.missed, number):
             return ParkingAlarm.SENSOR_LOST
     if memory.state != ParkingState.SEARCHING:
@@ -117,7 +117,7 @@ def alarm_of(memory: ParkingMemory) -> int:
 
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
     confirmed = 0
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         if is_confirmed(memory.perception.local_map.landmarks[number], params.mapping):
             confirmed += 1
     return ParkingSignals(

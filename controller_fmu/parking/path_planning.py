@@ -10,15 +10,21 @@ from controller_fmu.parking.following.path_tracking import begin_path
 from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.visibility import predict_range
 from controller_fmu.parking.measurement.cycle import seconds
-from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point
-from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, SensorPose, reading_status, sensor_pose
+from controller_fmu.parking.measurement.predicted_range import predict_range_to_point
+from controller_fmu.parking.measurement.sensor import (
+    MAX_SENSORS,
+    ReadingStatus,
+    SensorPose,
+    reading_status,
+    sensor_pose,
+)
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
-    REMEMBERED,
+    MAX_REMEMBERED,
     KnownEchoes,
     VehiclePlace,
     away_from_vehicle,
@@ -34,7 +40,7 @@ from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
     PlanningStatus,
     continue_search,
-    planned_path,
+    path_of_plan,
     search_status,
     search_until,
 )
@@ -73,10 +79,10 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
 def obstacle_count(memory: ParkingMemory) -> int:
     """Return how many landmarks and remembered echoes there are."""
     count = 0
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         if memory.perception.local_map.landmarks[number].type != LandmarkType.NONE:
             count += 1
-    for number in range(REMEMBERED):
+    for number in range(MAX_REMEMBERED):
         if memory.perception.remembered[number].is_present:
             count += 1
     return count
@@ -94,14 +100,16 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
     remembered = perception.remembered
     echoes = perception.echoes
     sensors = params.car.ultrasonic
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         reading = perception.cycle.readings[number]
         status = reading_status(reading, sensors)
         if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
             middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
             limit = reading - params.monitor.unexplained
-            landmarks = tuple(contradict_at_rest(landmarks[place], middle, limit, params) for place in range(LANDMARKS))
-            remembered = tuple(_still_there(remembered[place], middle, limit) for place in range(REMEMBERED))
+            landmarks = tuple(
+                contradict_at_rest(landmarks[place], middle, limit, params) for place in range(MAX_LANDMARKS)
+            )
+            remembered = tuple(_still_there(remembered[place], middle, limit) for place in range(MAX_REMEMBERED))
             own = echoes[number]
             if own.is_present and planar_distance(own.x, own.y, middle.x, middle.y) < limit:
                 echoes = echoes[:number] + (EchoObstacle(),) + echoes[number + 1 :]
@@ -116,7 +124,7 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
 
 def _still_there(echo: EchoObstacle, sensor: SensorPose, limit: float) -> EchoObstacle:
     """Return an echo unless a sensor measured at least ``limit`` [m] through it."""
-    return EchoObstacle() if predicted_range_to_point(sensor, echo.x, echo.y).distance < limit else echo
+    return EchoObstacle() if predict_range_to_point(sensor, echo.x, echo.y).distance < limit else echo
 
 
 def contradict_at_rest(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
@@ -147,7 +155,7 @@ def continue_plan(
     if status == PlanningStatus.PLANNING and count <= params.plan.max_steps:
         return memory
     if status == PlanningStatus.PLANNED:
-        path = without_short_end(planned_path(work))
+        path = without_short_end(path_of_plan(work))
         if path.margin >= params.plan.min_margin:
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
@@ -191,10 +199,10 @@ def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> Slo
     """Return the slot as the map has it now, seen by a vehicle at ``pose``."""
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
-    return corrected_slot(memory.search, landmarks, outline, params.mapping)
+    return correct_slot_by_map(memory.search, landmarks, outline, params.mapping)
 
 
-def corrected_slot(
+def correct_slot_by_map(
     search: SearchProgress, landmarks: tuple[Landmark, ...], outline: VehicleOutline, mapping: MappingParams
 ) -> SlotCandidate:
     """Return the slot as it is known now: by all echoes of it, and by what else has been mapped in it."""
@@ -239,23 +247,23 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     memory = _without_own_place(memory, pose, outline)
     if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
-    slot = corrected_slot(memory.search, memory.perception.local_map.landmarks, outline, params.mapping)
+    slot = correct_slot_by_map(memory.search, memory.perception.local_map.landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
     relaxed = memory.plan.is_relaxed
     beside = tuple(
         _as_obstacle(memory.perception.local_map.landmarks[number], slot, relaxed, outline, pose)
-        for number in range(LANDMARKS)
+        for number in range(MAX_LANDMARKS)
     )
     place = VehiclePlace(pose, road)
     mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
     half_angle = params.car.ultrasonic.half_angle
     before = memory.perception.remembered
     remembered = tuple(
-        without_explained(before[number], mapped, half_angle, params.monitor) for number in range(REMEMBERED)
+        without_explained(before[number], mapped, half_angle, params.monitor) for number in range(MAX_REMEMBERED)
     )
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
     present = memory.perception.echoes
-    present = tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(SENSORS))
+    present = tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(MAX_SENSORS))
     echoes = KnownEchoes(remembered, present)
     obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
     goal = goal_pose(slot, outline, params.slot)
@@ -286,9 +294,10 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     beside = tuple(
-        _as_unknown(memory.perception.local_map.landmarks[number], outline, pose, params) for number in range(LANDMARKS)
+        _as_unknown(memory.perception.local_map.landmarks[number], outline, pose, params)
+        for number in range(MAX_LANDMARKS)
     )
-    echoes = KnownEchoes(memory.perception.remembered, (EchoObstacle(),) * SENSORS)
+    echoes = KnownEchoes(memory.perception.remembered, (EchoObstacle(),) * MAX_SENSORS)
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
     if memory.strategy == Strategy.PULL_OUT:
@@ -366,7 +375,7 @@ def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: Ve
         Landmark()
         if landmarks[number].type != LandmarkType.NONE and landmark_distance(landmarks[number], pose, outline) <= 0.0
         else landmarks[number]
-        for number in range(LANDMARKS)
+        for number in range(MAX_LANDMARKS)
     )
 
 

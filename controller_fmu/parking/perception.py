@@ -17,7 +17,7 @@ from controller_fmu.parking.map.facing_surface import (
     is_pair,
 )
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
-from controller_fmu.parking.map.local_map import expected_range, update_map
+from controller_fmu.parking.map.local_map import range_by_map, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
@@ -26,7 +26,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     range_to_polygons,
 )
 from controller_fmu.parking.measurement.sensor import (
-    SENSORS,
+    MAX_SENSORS,
     ReadingStatus,
     range_variance,
     reading_status,
@@ -60,7 +60,7 @@ YIELD_TIME = 3.0
 """The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
 MAX_MONITORED_RANGE = 1.5
 """Echoes farther [m] than this are left to later: twice the stopping distance from top speed with a slow brake."""
-DISPLACED = 0.06
+MAX_DISPLACEMENT = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""
 SIDE_SENSOR = 8
@@ -82,7 +82,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
         return memory
     memory = memory._replace(perception=memory.perception._replace(yields=max(memory.perception.yields - 1, 0)))
     if is_driving_state(memory.state):
-        tracks = tuple(_track(memory, number, inputs, params) for number in range(SENSORS))
+        tracks = tuple(_track(memory, number, inputs, params) for number in range(MAX_SENSORS))
         slot_filter = _update_slot_filter(memory, inputs, params)
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
@@ -110,7 +110,7 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
         return search.slot_filter
     slot_filter = predict_slot(search.slot_filter, inputs.odometry, driven, params.mapping)
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         reading = memory.perception.cycle.readings[number]
         if reading_status(reading, sensors) == ReadingStatus.ECHO:
             sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
@@ -122,10 +122,10 @@ def _with_tracks(
     perception: Perception, tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
 ) -> Perception:
     """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
-    echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
+    echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
     yields = perception.yields
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         if is_yielded_to(tracks[number]):
             yields = yield_cycles(params)
     return perception._replace(
@@ -140,7 +140,7 @@ def yield_cycles(params: ParkingParams) -> int:
 
 def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
     """Return whether an object that the map does not hold approaches by itself."""
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         if echoes[number].is_present and echoes[number].is_unexplained and echoes[number].closing_speed > MAX_REST:
             return True
     return False
@@ -156,7 +156,7 @@ def _with_facing(
         if is_pair(number):
             a = tracks[number]
             b = tracks[number + 1]
-            is_displaced = abs(a.range - a.expected) > DISPLACED and abs(b.range - b.expected) > DISPLACED
+            is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
             if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
                 new = facing_segment(
                     sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry),
@@ -202,7 +202,7 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
         mapped = range_to_polygons(sensor, params.map, sensors.max_range)
         planned = mapped if mapped.distance < planned.distance else planned
     tolerance = params.monitor.unexplained
-    expected = expected_range(perception.local_map.landmarks, sensor, planned, measured - tolerance, params.mapping)
+    expected = range_by_map(perception.local_map.landmarks, sensor, planned, measured - tolerance, params.mapping)
     unexplained = measured < expected.distance - tolerance
     towards = direction_of(expected, sensor)
     surface = surface_near(expected, measured, params.monitor)
@@ -216,7 +216,7 @@ def surface_near(expected: PredictedRange, measured: float, params: MonitorParam
     """
     is_side = expected.origin in (EchoOrigin.INTERIOR, EchoOrigin.CONE_EDGE)
     nearer = expected.distance - measured
-    if not is_side or nearer > params.unexplained or nearer < -DISPLACED:
+    if not is_side or nearer > params.unexplained or nearer < -MAX_DISPLACEMENT:
         return EchoSurface()
     low = max(expected.low, -HALF_SENSOR_SPACING)
     return EchoSurface(expected.surface.x, expected.surface.y, low, min(expected.high, HALF_SENSOR_SPACING))
@@ -254,7 +254,7 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
         else:
             search = _with_side(search, memory, 1.0, params)
             search = _with_side(search, memory, -1.0, params)
-            number = chosen_number(search.offered, inputs.driver_selection)
+            number = number_of_choice(search.offered, inputs.driver_selection)
             search = search._replace(slot=search.offered[number - 1] if number > 0 else SlotCandidate(), shown=number)
         memory = memory._replace(search=search)
     waited = memory.search.waited + dt_ns if stands and memory.search.slot.type == SlotType.NONE else 0
@@ -305,7 +305,7 @@ def with_offer(offered: tuple[SlotCandidate, ...], found: SlotCandidate) -> tupl
     return (found,) + offered[: MAX_OFFERS - 1]
 
 
-def chosen_number(offered: tuple[SlotCandidate, ...], selection: DriverSelection) -> int:
+def number_of_choice(offered: tuple[SlotCandidate, ...], selection: DriverSelection) -> int:
     """Return the number, from 1, of the slot that the driver means: the newest on the side chosen; 0: none."""
     if selection.slot > 0:
         slot = offered[min(selection.slot, MAX_OFFERS) - 1]

@@ -14,7 +14,7 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.facing_surface import BUMPER_SENSORS, is_pair
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, free_index, offset_of, replace_landmark
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, reading_status
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus, reading_status
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH
 from modelkit.car import Car
 from modelkit.geometry import Point
@@ -48,7 +48,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
     rear = -far
     left = far
     right = -far
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         mount = sensors.mounts[number]
         is_middle = number > 0 and is_pair(number) and is_pair(number - 1)
         status = reading_status(readings[number], sensors)

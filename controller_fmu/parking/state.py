@@ -9,11 +9,11 @@ from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.local_map import LandmarkMap
 from controller_fmu.parking.measurement.cycle import MeasurementCycle
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, MonitorVerdict
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks
 from controller_fmu.parking.objects.track import ObjectTrack
-from controller_fmu.parking.obstacle_map import REMEMBERED
+from controller_fmu.parking.obstacle_map import MAX_REMEMBERED
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.slots.candidate import SlotCandidate
 from controller_fmu.parking.slots.slot_filter import SlotFilter
@@ -45,7 +45,7 @@ class SearchProgress(NamedTuple):
     shown: int = 0
     """Number of the slot shown among those, from 1."""
     slot_filter: SlotFilter = SlotFilter()
-    """What is measured of the slot on the way in."""
+    """What is measured of the slot while entering it."""
     refused: SlotCandidate = SlotCandidate()
     """The last slot without a path."""
 
@@ -78,9 +78,9 @@ class Perception(NamedTuple):
     time: int = 0
     """[ns]"""
     local_map: LandmarkMap = LandmarkMap()
-    tracks: tuple[ObjectTrack, ...] = (ObjectTrack(),) * SENSORS
-    echoes: tuple[EchoObstacle, ...] = (EchoObstacle(),) * SENSORS
-    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * REMEMBERED
+    tracks: tuple[ObjectTrack, ...] = (ObjectTrack(),) * MAX_SENSORS
+    echoes: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_SENSORS
+    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_REMEMBERED
     pose: Pose = Pose()
     """At the last measurement cycle."""
     yields: int = 0

@@ -37,7 +37,7 @@ from controller_fmu.parking.monitor.fault_monitor import (
     input_fault,
     is_taken_over,
 )
-from controller_fmu.parking.obstacle_map import REMEMBERED, remember_echoes
+from controller_fmu.parking.obstacle_map import MAX_REMEMBERED, remember_echoes
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.path_planning import (
     begin_plan,
@@ -51,10 +51,10 @@ from controller_fmu.parking.path_planning import (
     with_way_out,
 )
 from controller_fmu.parking.perception import (
-    chosen_number,
     is_approached,
     is_driving_state,
     is_same_gap,
+    number_of_choice,
     perceive,
     planar_distance,
     search_reason,
@@ -195,7 +195,7 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     is_another = (
         not is_out
         and not search.slot.is_external
-        and chosen_number(search.offered, inputs.driver_selection) != search.shown
+        and number_of_choice(search.offered, inputs.driver_selection) != search.shown
     )
     return (
         bit(Condition.GOAL_KNOWN, not searches)
@@ -322,7 +322,7 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
         strategy=Strategy.SLOT,
         reason=Reason.NONE,
         search=memory.search._replace(stand=pose, waited=0, resumes=False),
-        perception=memory.perception._replace(remembered=(EchoObstacle(),) * REMEMBERED),
+        perception=memory.perception._replace(remembered=(EchoObstacle(),) * MAX_REMEMBERED),
         plan=PlanProgress(),
         progress=PathProgress(stop_correction=memory.progress.stop_correction),
         verdict=MonitorVerdict(),

@@ -1,4 +1,4 @@
-"""A steering that really sticks while somebody parks: every one that is asked for something is found, none falsely."""
+"""A steering that really sticks while parking: every one with a request is found, none falsely."""
 
 import math
 

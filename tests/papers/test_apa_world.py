@@ -13,7 +13,7 @@ from orchestrator.commands.sweep import select_study
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.studies.parking.world import ends
 from orchestrator.studies.parking.world.factors import FACTORS
-from orchestrator.studies.parking.world.feasibility import HEARD, feasibility_columns
+from orchestrator.studies.parking.world.feasibility import DETECTED_HEIGHT, feasibility_columns
 from orchestrator.studies.parking.world.study import fields, space, study
 from orchestrator.studies.sweep.repeat import repeat_row
 from orchestrator.studies.sweep.study.study import Study
@@ -168,7 +168,7 @@ def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() ->
 
 
 def test_a_heard_wheel_stop_is_where_it_is_said_to_be() -> None:
-    """In a slot that is valid no stop that is heard lies under a car that stands at its target; else one does."""
+    """In a valid slot no detectable stop lies under a car that stands at its target; else one does."""
     made = study(2000, 5)
     values, labels = columns(made), made.design.labels
     said = feasibility_columns({**values, **labels})["valid"]
@@ -176,10 +176,10 @@ def test_a_heard_wheel_stop_is_where_it_is_said_to_be() -> None:
     tail = half_turn * values["target.y"] - values["vehicle.car.rear_overhang"] * np.cos(
         np.radians(0.25 * (labels["turn_a"] + labels["turn_b"]))
     )
-    stop = np.where(labels["kerb_height"] >= HEARD, half_turn * values["vehicle.scene.kerbs[1].y1"], -np.inf)
+    stop = np.where(labels["kerb_height"] >= DETECTED_HEIGHT, half_turn * values["vehicle.scene.kerbs[1].y1"], -np.inf)
     under = (labels["kind"] == 1) & (labels["behind"] == 2) & (stop > tail)
     assert (said == 0.0).sum() > 50
-    assert (under != (said == 0.0)).sum() <= 3  # a car askew by 2 deg is 1 cm shorter across
+    assert (under != (said == 0.0)).sum() <= 3  # a car turned by 2 deg is 1 cm shorter across
 
 
 @pytest.mark.parametrize(

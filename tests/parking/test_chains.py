@@ -17,7 +17,7 @@ from controller_fmu.parking.map.chain_update import (
 from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
 from controller_fmu.parking.map.facing_surface import facing_segment
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     end_point,
@@ -174,7 +174,7 @@ def test_a_better_look_at_a_side_replaces_the_other() -> None:
     known = Landmark(
         LandmarkType.SEGMENT, 0.0, 0.0, 0.0, xx=1e-3, yy=1e-3, hh=1e-4, start=-1.0, end=1.0, start_known=True
     )
-    landmarks = (known,) + (Landmark(),) * (LANDMARKS - 1)
+    landmarks = (known,) + (Landmark(),) * (MAX_LANDMARKS - 1)
     assert same_side(landmarks, known._replace(y=0.03), -1, PARAMS) == 0
     assert same_side(landmarks, known._replace(y=0.03), 0, PARAMS) == -1
     assert same_side(landmarks, known._replace(y=0.6), -1, PARAMS) == -1

@@ -11,10 +11,10 @@ from controller_fmu.parking.chart import Condition, ParkingState, next_parking_s
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import is_on_map
-from controller_fmu.parking.perception import chosen_number, with_offer
+from controller_fmu.parking.perception import number_of_choice, with_offer
 from controller_fmu.parking.planning.planner import begin, is_for_request
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork
@@ -29,7 +29,7 @@ from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 0.95)
 SLOT, MAPPING = SlotParams(), MappingParams()
-NOWHERE = (Landmark(),) * LANDMARKS
+NOWHERE = (Landmark(),) * MAX_LANDMARKS
 ROAD = Pose(9.0, 1.8, 0.0)
 
 
@@ -119,14 +119,14 @@ def test_the_driver_chooses_among_the_slots_offered() -> None:
         offered = with_offer(offered, found)
     assert [slot.behind.end for slot in offered] == [12.0, 1.0, 0.5], "the newest first, a better estimate in place"
     chosen = {
-        (side, number): chosen_number(offered, DriverSelection(side=side, slot=number))
+        (side, number): number_of_choice(offered, DriverSelection(side=side, slot=number))
         for side in ChosenSide
         for number in range(MAX_OFFERS + 1)
     }
     assert [chosen[ChosenSide.ANY, number] for number in range(4)] == [1, 1, 2, 3]
     assert [chosen[ChosenSide.LEFT, number] for number in range(4)] == [2, 0, 2, 0]
     assert [chosen[ChosenSide.RIGHT, number] for number in range(4)] == [1, 1, 0, 3]
-    assert chosen_number(with_offer((SlotCandidate(),) * MAX_OFFERS, gap(0.0, 1.0)), DriverSelection(slot=2)) == 0
+    assert number_of_choice(with_offer((SlotCandidate(),) * MAX_OFFERS, gap(0.0, 1.0)), DriverSelection(slot=2)) == 0
 
 
 def test_the_polygons_of_a_map_stand_behind_those_of_the_landmarks() -> None:

@@ -9,7 +9,7 @@ import pytest
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import is_free
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     along_of,
@@ -18,7 +18,7 @@ from controller_fmu.parking.map.landmark import (
     offset_variance,
     segment_point,
 )
-from controller_fmu.parking.map.local_map import LandmarkMap, expected_range, update_map
+from controller_fmu.parking.map.local_map import LandmarkMap, range_by_map, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange
@@ -161,7 +161,7 @@ def test_silent_sensors_forget_no_wall() -> None:
 
 def test_what_is_in_the_blind_zone_is_kept() -> None:
     near = Landmark(LandmarkType.POINT, 3.25, 0.25, xx=1e-4, yy=1e-4, confirmations=9)
-    local_map = LandmarkMap(landmarks=(near,) + (Landmark(),) * (LANDMARKS - 1), begun=True)
+    local_map = LandmarkMap(landmarks=(near,) + (Landmark(),) * (MAX_LANDMARKS - 1), begun=True)
     for _ in range(20):
         local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, Pose(), CAR.ultrasonic, PARAMS)
     assert local_map.landmarks[0].type == LandmarkType.POINT
@@ -173,7 +173,7 @@ def test_a_narrow_body_that_came_between_two_cones_is_kept() -> None:
         LandmarkType.SEGMENT, -0.95, 0.0, math.pi / 2, xx=1e-4, hh=1e-3, start=-0.25, end=0.25, confirmations=9
     )
     for heading in (math.pi / 2, -math.pi / 2):
-        landmarks = (surface._replace(heading=heading),) + (Landmark(),) * (LANDMARKS - 1)
+        landmarks = (surface._replace(heading=heading),) + (Landmark(),) * (MAX_LANDMARKS - 1)
         local_map = LandmarkMap(landmarks=landmarks, begun=True)
         for _ in range(20):
             local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, Pose(), CAR.ultrasonic, PARAMS)
@@ -192,10 +192,10 @@ def test_a_side_does_not_go_on_where_the_sensor_measures_through() -> None:
     across = math.atan2(sensor.axis_y, sensor.axis_x) + math.pi / 2
     person = Landmark(LandmarkType.SEGMENT, x, y, across, start=-1.5, end=-1.0, confirmations=9)
     kerb = PredictedRange(2.0, EchoOrigin.INTERIOR, sensor.x + 2.0 * sensor.axis_x, sensor.y + 2.0 * sensor.axis_y)
-    landmarks = (person, *(Landmark(),) * (LANDMARKS - 1))
-    unknown = expected_range(landmarks, sensor, kerb, 0.0, PARAMS)
+    landmarks = (person, *(Landmark(),) * (MAX_LANDMARKS - 1))
+    unknown = range_by_map(landmarks, sensor, kerb, 0.0, PARAMS)
     assert unknown.distance == pytest.approx(1.2, abs=0.1), "it may go on before the kerb"
-    assert expected_range(landmarks, sensor, kerb, 1.8, PARAMS) == kerb
+    assert range_by_map(landmarks, sensor, kerb, 1.8, PARAMS) == kerb
 
 
 @pytest.mark.parametrize(
@@ -208,7 +208,7 @@ def test_a_pedestrian_who_left_proves_no_sensor_silent(confirmations: int, half:
     surface = Landmark(
         LandmarkType.SEGMENT, mount.x - 1.0, mount.y, math.pi / 2, xx=1e-4, yy=1e-4, start=-half, end=half
     )
-    known = (surface._replace(confirmations=confirmations), *(Landmark(),) * (LANDMARKS - 1))
+    known = (surface._replace(confirmations=confirmations), *(Landmark(),) * (MAX_LANDMARKS - 1))
     local_map = LandmarkMap(landmarks=known, begun=True)
     for _ in range(MISSED_ECHOES):
         readings = tuple(CAR.ultrasonic.max_range if number == 5 else 1.0 for number in range(12))

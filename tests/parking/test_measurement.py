@@ -11,7 +11,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
     PredictedRange,
     direction_of,
-    predicted_range_to_segment,
+    predict_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import ReadingStatus, reading_status, sensor_pose
 from controller_fmu.parking.measurement.silent_sensor import (
@@ -31,7 +31,7 @@ COORDINATE = st.floats(-4.0, 4.0)
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, st.floats(-3.0, 3.0))
 def test_predicted_range_is_that_of_the_exact_cone(ax: float, ay: float, bx: float, by: float, axis: float) -> None:
     sensor = sensor_pose(SensorMount(), HALF, Pose(0.3, -0.2, axis))
-    predicted = predicted_range_to_segment(sensor, Point(ax, ay), Point(bx, by))
+    predicted = predict_range_to_segment(sensor, Point(ax, ay), Point(bx, by))
     exact = cone_line(Point(0.3, -0.2), axis, HALF, Point(ax, ay), Point(bx, by))
     if max(math.hypot(ax - 0.3, ay + 0.2), math.hypot(bx - 0.3, by + 0.2)) < 0.01:
         return
@@ -58,10 +58,10 @@ def test_an_echo_predicted_at_the_sensor_comes_along_its_axis() -> None:
 
 def test_origin_of_an_echo() -> None:
     sensor = sensor_pose(SensorMount(), HALF, Pose())
-    assert predicted_range_to_segment(sensor, Point(1.0, -1.0), Point(1.0, 1.0)).origin == EchoOrigin.INTERIOR
-    assert predicted_range_to_segment(sensor, Point(1.0, 0.1), Point(1.0, 1.0)).origin == EchoOrigin.START
-    assert predicted_range_to_segment(sensor, Point(1.0, -1.0), Point(1.0, -0.1)).origin == EchoOrigin.END
-    assert predicted_range_to_segment(sensor, Point(0.5, 0.5), Point(4.0, 0.5)).origin == EchoOrigin.CONE_EDGE
+    assert predict_range_to_segment(sensor, Point(1.0, -1.0), Point(1.0, 1.0)).origin == EchoOrigin.INTERIOR
+    assert predict_range_to_segment(sensor, Point(1.0, 0.1), Point(1.0, 1.0)).origin == EchoOrigin.START
+    assert predict_range_to_segment(sensor, Point(1.0, -1.0), Point(1.0, -0.1)).origin == EchoOrigin.END
+    assert predict_range_to_segment(sensor, Point(0.5, 0.5), Point(4.0, 0.5)).origin == EchoOrigin.CONE_EDGE
 
 
 def test_meaning_of_a_reading() -> None:

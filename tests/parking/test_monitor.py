@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
 from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.predicted_range import predicted_range_to_point, predicted_range_to_segment
+from controller_fmu.parking.measurement.predicted_range import predict_range_to_point, predict_range_to_segment
 from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.monitor.collision_monitor import (
-    UNLIMITED,
+    NO_LIMIT,
     EchoObstacle,
     MonitorVerdict,
     VehicleMotion,
@@ -50,7 +50,7 @@ from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 1.0)
 NOTHING = (EchoObstacle(),) * 12
-EMPTY = (Landmark(),) * LANDMARKS
+EMPTY = (Landmark(),) * MAX_LANDMARKS
 FRONT = OUTLINE.centre_ahead + OUTLINE.half_length
 
 
@@ -109,10 +109,10 @@ def test_speed_for_a_distance_is_the_inverse_of_the_stopping_distance(
 def test_a_wall_ahead_stops_and_one_beside_or_behind_does_not() -> None:
     assert verdict(0.8, wall_at(FRONT + 0.2)).is_blocked
     assert verdict(0.8, wall_at(FRONT + 0.2)).is_mapped
-    assert verdict(0.8, wall_at(FRONT + 2.0)).speed_limit == UNLIMITED
-    assert verdict(0.8, wall_at(-0.7)).speed_limit == UNLIMITED
+    assert verdict(0.8, wall_at(FRONT + 2.0)).speed_limit == NO_LIMIT
+    assert verdict(0.8, wall_at(-0.7)).speed_limit == NO_LIMIT
     beside = Landmark(LandmarkType.SEGMENT, 0.0, -1.0, 0.0, start=-5.0, end=5.0, confirmations=9)
-    assert verdict(0.8, (beside,) + EMPTY[1:]).speed_limit == UNLIMITED
+    assert verdict(0.8, (beside,) + EMPTY[1:]).speed_limit == NO_LIMIT
 
 
 def test_an_unconfirmed_landmark_does_not_stop() -> None:
@@ -144,7 +144,7 @@ def rear_corner_echo(shift: float) -> EchoObstacle:
     corner = Point(-0.6, 0.825)
     foot = Point(corner.x - 0.05 * uy, corner.y + 0.05 * ux)
     a = Point(foot.x - 3.0 * ux, foot.y - 3.0 * uy)
-    expected = predicted_range_to_segment(sensor, a, Point(foot.x + 3.0 * ux, foot.y + 3.0 * uy))
+    expected = predict_range_to_segment(sensor, a, Point(foot.x + 3.0 * ux, foot.y + 3.0 * uy))
     measured = expected.distance - shift
     share = measured / expected.distance
     x, y = sensor.x + share * (expected.x - sensor.x), sensor.y + share * (expected.y - sensor.y)
@@ -237,7 +237,7 @@ def test_no_static_corner_counts_as_moving(speed: float, curvature: float, later
     readings = []
     for pose in poses:
         sensor = sensor_pose(FLANK, math.radians(30.0), pose)
-        readings.append(min(predicted_range_to_point(sensor, x, 0.9 + lateral).distance, 5.0))
+        readings.append(min(predict_range_to_point(sensor, x, 0.9 + lateral).distance, 5.0))
     assert not any(map(is_yielded_to, tracked(readings, poses, FLANK)))
 
 

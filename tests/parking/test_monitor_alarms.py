@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from controller_fmu.common.monitor import MAX_PLAUSIBLE_VALUE
-from controller_fmu.parking.map.landmark import LANDMARKS
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.standalone import MODEL
 from fmus.native.sources import translate_model
@@ -70,7 +70,7 @@ int main(void)
 }}
 """
 EVA = ("frama-c", "-eva", "-eva-precision", "2", "-warn-special-float", "non-finite")
-UNROLL = ("-eva-plevel", str(4 * LANDMARKS))
+UNROLL = ("-eva-plevel", str(4 * MAX_LANDMARKS))
 """Arrays of landmarks are kept item by item."""
 
 
@@ -100,10 +100,10 @@ def alarms(folder: Path, motion: dict[str, tuple[Any, Any]]) -> str:
         within("outline", OUTLINE),
         within("params", declared(MonitorParams)),
         within("mapping", declared(MappingParams)),
-        *(within(f"landmarks[{number}]", LANDMARK) for number in range(LANDMARKS)),
-        *(within(f"echoes[{number}]", ECHO) for number in range(SENSORS)),
+        *(within(f"landmarks[{number}]", LANDMARK) for number in range(MAX_LANDMARKS)),
+        *(within(f"echoes[{number}]", ECHO) for number in range(MAX_SENSORS)),
     ]
-    text = HARNESS.format(landmarks=LANDMARKS, sensors=SENSORS, values="\n".join(values))
+    text = HARNESS.format(landmarks=MAX_LANDMARKS, sensors=MAX_SENSORS, values="\n".join(values))
     (folder / "harness.c").write_text(text, encoding="utf-8")
     ran = subprocess.run(
         [*EVA, *UNROLL, f"-cpp-extra-args=-I{folder}", folder / "harness.c"],

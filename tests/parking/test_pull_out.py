@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.common.driver_selection import ChosenSide, ChosenTask, DriverSelection
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.geometry.outline import outline_distance, vehicle_outline
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.outputs import prompt_of
 from controller_fmu.parking.params import ParkingParams
@@ -28,7 +28,7 @@ from modelkit.vocabulary import Pose, Prompt
 
 CAR = Car()
 OUTLINE = vehicle_outline(CAR, 0.95)
-NOWHERE = (Landmark(),) * LANDMARKS
+NOWHERE = (Landmark(),) * MAX_LANDMARKS
 BETWEEN_CARS = (0.9, 0.9, 0.9, 0.9, 0.4, 0.4, 0.4, 0.4, 5.0, 5.0, 0.2, 0.2)
 """Ranges [m] of a vehicle with a car 0.9 m ahead, one 0.4 m behind, and a kerb 0.2 m to its right."""
 

@@ -4,7 +4,7 @@ import pytest
 
 from controller_fmu.common.steering_monitor import SteeringMonitorState
 from controller_fmu.parking.chart import Condition, ParkingState, next_parking_state
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap
 from controller_fmu.parking.measurement.cycle import MeasurementCycle
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks, is_taken_over
@@ -81,7 +81,7 @@ def test_what_left_is_forgotten_and_what_stands_is_not() -> None:
     mount = PARAMS.car.ultrasonic.mounts[5]
     x, y = mount.x - 1.0, mount.y
     surface = Landmark(LandmarkType.SEGMENT, x, y, 0.5 * 3.141592653589793, start=0.0, end=0.8, confirmations=9)
-    local_map = LandmarkMap(landmarks=(surface, *(Landmark(),) * (LANDMARKS - 1)))
+    local_map = LandmarkMap(landmarks=(surface, *(Landmark(),) * (MAX_LANDMARKS - 1)))
     for reading, left in ((1.0, 1), (3.0, 0), (5.0, 0)):
         readings = tuple(reading if number == 5 else 0.5 for number in range(12))
         cycle = MeasurementCycle(readings=readings, is_new=True)

@@ -7,14 +7,14 @@ import pytest
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import without_inside
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import stands_in_slot
 from controller_fmu.parking.slots.candidate import (
-    DECIDED,
+    LOG_TEN,
     SlotCandidate,
     SlotType,
     find_slot,
@@ -121,19 +121,19 @@ def test_two_cars_seen_as_one_from_afar_leave_the_type_open(front: float, is_dec
     begun = RowMember(4.1, 5.0, front, True, False)
     none = (RowMember(),) * 6
     candidate = SlotCandidate(row=SlotRow(members=(begun, seen, *none), used=2), behind=seen, ahead=begun)
-    assert (log_likelihood_ratio(candidate) > DECIDED) == is_decided
+    assert (log_likelihood_ratio(candidate) > LOG_TEN) == is_decided
 
 
 def test_a_side_between_two_gaps_is_seen_in_full() -> None:
     """One of its ends was not, so 1 m of it counted as the next car's: too short for any car it showed nothing."""
     members = (RowMember(7.0, 7.8, 2.7, True, False), RowMember(-1.6, 0.0, 2.7, False, True))
     row = SlotRow(members=(*members, RowMember(-4.3, -2.7, 2.7, True, True), *(RowMember(),) * 5), used=3)
-    assert log_likelihood_ratio(SlotCandidate(row=row)) < -3.0 * DECIDED
+    assert log_likelihood_ratio(SlotCandidate(row=row)) < -3.0 * LOG_TEN
 
 
 def test_a_pair_of_cars_that_is_still_being_passed_leaves_the_type_open() -> None:
     """3.7 m so far are a car along the road as well as two across it, of which the second ends farther on."""
-    assert log_likelihood_ratio(row_of((3.7, 0.6), False)) <= DECIDED
+    assert log_likelihood_ratio(row_of((3.7, 0.6), False)) <= LOG_TEN
 
 
 @pytest.mark.parametrize(("bays", "bay"), [(1, 2.3), (1, 2.9), (2, 2.5), (2, 2.9), (3, 2.4), (3, 2.8)])
@@ -152,7 +152,7 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
     ahead = RowMember(3.0, 3.4, 1.0, True, True, 1.0, 1.0, 0.05, 0.05, 0.4, 0.4)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=ahead, front=1.0)
     flank = side(3.0 + beyond, -3.5, 90.0, 3.0 if beyond > 0.0 else 0.3)
-    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
     assert corrected.ahead.start == pytest.approx(edge)
 
 
@@ -171,7 +171,7 @@ def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
     pillar = Landmark(LandmarkType.POINT, 0.0, -1.7, confirmations=20)
     behind = pillar._replace(y=-4.5)
     for posts, end in (([], -0.9), ([pillar], 0.0), ([behind], -0.9)):
-        landmarks = (*cars, *posts, *(Landmark(),) * (LANDMARKS - 2 - len(posts)))
+        landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 2 - len(posts)))
         row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
         slot = find_slot(row, landmarks, LandmarkMap().free_space.right, OUTLINE, SlotParams(), MappingParams())
         edge = row_point(slot.row, slot.behind.end, slot.front)
@@ -186,7 +186,7 @@ def side(x: float, y: float, turn: float, length: float) -> Landmark:
 
 
 def row_beside(sides: list[Landmark], heading: float) -> SlotRow:
-    rest = (Landmark(),) * (LANDMARKS - len(sides))
+    rest = (Landmark(),) * (MAX_LANDMARKS - len(sides))
     return find_row((*sides, *rest), Pose(0.0, 2.0, math.radians(heading)), -1.0, MappingParams())
 
 
@@ -210,7 +210,7 @@ def test_a_flank_in_the_gap_bounds_it_wherever_its_corner_was_seen() -> None:
     row = SlotRow(Pose(), -1.0, members + (RowMember(),) * 6, 2)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=members[1], ahead=members[0], front=2.0)
     flank = side(2.6, -3.5, 90.0, 2.0)
-    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
     assert corrected.ahead.start == pytest.approx(2.6, abs=0.05)
     assert corrected.behind.end == 0.0
 

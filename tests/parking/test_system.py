@@ -10,7 +10,7 @@ import yaml
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.map.local_map import LandmarkMap
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.work import PlanningWork
@@ -59,7 +59,7 @@ def test_it_parks_in_the_empty_bay_of_a_car_park(tmp_path: Path) -> None:
     + [({8, 9}, True), ({10, 11}, True), ({4, 5}, True)],
 )
 def test_it_gives_up_where_two_sensors_beside_each_other_are_silent(silent: set[int], gives_up: bool) -> None:
-    missed = MissedEchoes(tuple(MISSED_ECHOES if number in silent else 0 for number in range(SENSORS)))
+    missed = MissedEchoes(tuple(MISSED_ECHOES if number in silent else 0 for number in range(MAX_SENSORS)))
     memory = ParkingMemory(state=ParkingState.DRIVING, perception=Perception(local_map=LandmarkMap(missed=missed)))
     inputs = ParkingSystemInput(apa_switch=True, measured_speed=0.3)
     after = parking_sample(new_store(PlanningWork), memory, inputs, ParkingParams(), 1_000_000)

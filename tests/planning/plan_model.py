@@ -4,7 +4,7 @@ import sys
 from typing import Annotated, NamedTuple
 
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.planning.planner import PlannedPath, planned_path, search_status, search_until
+from controller_fmu.parking.planning.planner import PlannedPath, path_of_plan, search_status, search_until
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.model import Model
@@ -41,7 +41,7 @@ def initialize(params: Params) -> tuple[State, Output]:
 def step(store: PlanningWork, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
     count = state.count + params.each
     search_until(store, ObstacleMap(), params.scene.corners, params.request, count)
-    return State(count), Output(search_status(store), planned_path(store))
+    return State(count), Output(search_status(store), path_of_plan(store))
 
 
 MODEL = Model(

@@ -11,11 +11,11 @@ from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
 from controller_fmu.parking.planning.clearance_margin import EXAMINED_DISTANCE, MARGIN_LEFT, MAX_OFFSET, MAX_OVERRUN
-from controller_fmu.parking.planning.planner import PlanningStatus, planned_path
+from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.reeds_shepp import list_words
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
-from controller_fmu.parking.planning.work import WORDS, PlanCount, PlanningWork
+from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork
 from modelkit.store import new_store, size_of
 from modelkit.vocabulary import Pose
 from tests.planning.scenes import (
@@ -54,7 +54,7 @@ def test_every_word_ends_where_it_should() -> None:
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
         count = list_words(store, ORIGIN, end, 0.0, 0.0, problem)
-        assert 32 <= count <= WORDS
+        assert 32 <= count <= MAX_WORDS
         for word in range(count):
             pose = ORIGIN
             for piece in range(5):
@@ -78,7 +78,7 @@ def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
 def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
     request = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     store = plan(request, scene_of(BOXES))
-    path = planned_path(store)
+    path = path_of_plan(store)
     pieces = [(piece.distance, piece.curvature) for piece in path.segments[: path.used]]
     poses, begin = poses_along(request.start, pieces), request.start
     gone = [math.dist(one[:2], other[:2]) for one, other in pairwise(poses)]

@@ -13,7 +13,7 @@ from controller_fmu.parking.following.rolling_steering import (
     upcoming_stop,
 )
 from controller_fmu.parking.planning.gear_segments import without_short_end
-from controller_fmu.parking.planning.planner import MAX_SEGMENTS, PlannedPath, PlanningStatus, planned_path
+from controller_fmu.parking.planning.planner import MAX_SEGMENTS, PlannedPath, PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import DrivingDynamics
 from controller_fmu.parking.planning.steering_transitions import MARGIN_FRACTION
 from controller_fmu.parking.planning.work import PlanCount, PlanValue
@@ -35,7 +35,7 @@ def path_with(start: Pose, polygons: list[list[tuple[float, float]]], dynamics: 
     assert poses[-1][:2] == pytest.approx(GOAL[:2], abs=1e-4)
     assert math.remainder(poses[-1].heading - GOAL.heading, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-4)
     assert least_clearance(poses, polygons, CAR) >= MARGIN_FRACTION * store.values[PlanValue.BEST_PATH_MARGIN] - 1e-3
-    return planned_path(store)
+    return path_of_plan(store)
 
 
 @pytest.mark.parametrize("start", STARTS)

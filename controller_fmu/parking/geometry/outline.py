@@ -75,7 +75,7 @@ def outline_distance(x: float, y: float, pose: Pose, outline: VehicleOutline) ->
     return math.sqrt(along * along + across * across)
 
 
-SAMPLES = 40
+SAMPLE_COUNT = 40
 """Points on the boundary: 0.3 m apart."""
 
 
@@ -96,7 +96,7 @@ def extent_within(pose: Pose, outline: VehicleOutline, frame: Pose, side: float,
     cos = math.cos(pose.heading)
     sin = math.sin(pose.heading)
     found = Extent()
-    for number in range(SAMPLES):
+    for number in range(SAMPLE_COUNT):
         at = boundary_point(outline, number)
         x = pose.x + at.x * cos - at.y * sin
         y = pose.y + at.x * sin + at.y * cos
@@ -113,8 +113,8 @@ def extent_within(pose: Pose, outline: VehicleOutline, frame: Pose, side: float,
 
 
 def boundary_point(outline: VehicleOutline, number: int) -> Point:
-    """Return one of ``SAMPLES`` points on the outline [m] in the vehicle's frame: ten on each edge."""
-    per_edge = SAMPLES // 4
+    """Return one of ``SAMPLE_COUNT`` points on the outline [m] in the vehicle's frame: ten on each edge."""
+    per_edge = SAMPLE_COUNT // 4
     edge = number // per_edge
     share = 2.0 * (number % per_edge) / per_edge - 1.0
     ahead = outline.half_length

@@ -9,7 +9,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import (
-    CHAIN,
+    MAX_ECHOES,
     ChainEcho,
     EchoChain,
     append_echo,
@@ -20,7 +20,7 @@ from controller_fmu.parking.map.echo_chain import (
     is_turned_back,
 )
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     along_of,
@@ -42,7 +42,7 @@ from controller_fmu.parking.map.segment_fit import (
     SegmentGuess,
     fit_segment,
 )
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predicted_range_to_segment
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predict_range_to_segment
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
 from modelkit.maths import wrap_angle
 
@@ -100,7 +100,7 @@ class ChainEnd(NamedTuple):
 class ChainUpdate(NamedTuple):
     """Landmarks and the chain after a fit."""
 
-    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * MAX_LANDMARKS
     chain: EchoChain = EchoChain()
 
 
@@ -216,11 +216,11 @@ def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, varian
     wide = sensor._replace(cone_cos=sensor.cone_cos - VIEW_TOLERANCE, cone_sin=sensor.cone_sin + CONE_SIGMA)
     tolerance = ROBUST_SIGMA * math.sqrt(variance + SURFACE_DEVIATION * SURFACE_DEVIATION)
     outside = 0
-    for number in range(CHAIN):
+    for number in range(MAX_ECHOES):
         if number < chain.used:
             echo = chain.echoes[number]
             at = wide._replace(x=echo.x, y=echo.y, axis_x=echo.axis_x, axis_y=echo.axis_y)
-            predicted_echo = predicted_range_to_segment(at, a, b)
+            predicted_echo = predict_range_to_segment(at, a, b)
             opening = CONE_SIGMA * echo.range if predicted_echo.origin == EchoOrigin.CONE_EDGE else 0.0
             if abs(predicted_echo.distance - echo.range) > tolerance + opening:
                 outside += 1
@@ -229,7 +229,7 @@ def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, varian
 
 def half_gap(echo: ChainEcho, segment: Landmark) -> float:
     """Return half of a gap [m] by the echo at its middle, off both corners: range2 = distance2 + (gap / 2)2."""
-    distance = predicted(segment, echo.x, echo.y)
+    distance = predict_residual(segment, echo.x, echo.y)
     return math.sqrt(max(echo.range * echo.range - distance * distance, 0.0))
 
 
@@ -284,7 +284,7 @@ def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: flo
 def _step_at(chain: EchoChain, outer: int, inner: int) -> float:
     """Return the distance [m] from an echo at the edge of a chain's part to the next."""
     a = chain.echoes[outer]
-    b = chain.echoes[min(max(inner, 0), CHAIN - 1)]
+    b = chain.echoes[min(max(inner, 0), MAX_ECHOES - 1)]
     return math.sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y))
 
 
@@ -305,7 +305,7 @@ def initial_line(chain: EchoChain, first: int, last: int, sensor: SensorPose) ->
     a = chain.echoes[first]
     b = chain.echoes[last]
     nearest = first
-    for number in range(CHAIN):
+    for number in range(MAX_ECHOES):
         if first <= number <= last and chain.echoes[number].range < chain.echoes[nearest].range:
             nearest = number
     heading = math.atan2(b.y - a.y, b.x - a.x)
@@ -322,12 +322,12 @@ def parting_echo(chain: EchoChain, segment: Landmark) -> int:
     """Return the echo before which two bodies part: the top of the largest hump over a fitted segment; 0: none."""
     best = 0.0
     at = 0
-    for number in range(CHAIN):
+    for number in range(MAX_ECHOES):
         if MIN_PART <= number <= chain.used - MIN_PART:
             total = 0.0
             for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
                 echo = chain.echoes[number + near]
-                total += echo.range - predicted(segment, echo.x, echo.y)
+                total += echo.range - predict_residual(segment, echo.x, echo.y)
             if total > best:
                 best = total
                 at = number
@@ -340,7 +340,7 @@ def _hump_top(chain: EchoChain, segment: Landmark, middle: int) -> int:
     most = 0.0
     for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
         echo = chain.echoes[middle + near]
-        behind = echo.range - predicted(segment, echo.x, echo.y)
+        behind = echo.range - predict_residual(segment, echo.x, echo.y)
         if behind > most:
             most = behind
             top = middle + near
@@ -354,7 +354,7 @@ def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, La
     """
     gain = 0.0
     left = 0.0
-    for number in range(CHAIN):
+    for number in range(MAX_ECHOES):
         if number < chain.used:
             before = chi_square_of(segments[0], chain.echoes[number], variance)
             after = chi_square_of(segments[1] if number < at else segments[2], chain.echoes[number], variance)
@@ -365,11 +365,11 @@ def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, La
 
 def chi_square_of(segment: Landmark, echo: ChainEcho, variance: float) -> float:
     """Return the squared residual of an echo over its ``variance`` [m2], so limited that no outlier decides."""
-    residual = echo.range - predicted(segment, echo.x, echo.y)
+    residual = echo.range - predict_residual(segment, echo.x, echo.y)
     return min(residual * residual / variance, ROBUST_SIGMA * ROBUST_SIGMA)
 
 
-def predicted(segment: Landmark, x: float, y: float) -> float:
+def predict_residual(segment: Landmark, x: float, y: float) -> float:
     """Return the distance [m] of a sensor at (x, y) to a segment, whatever its field of view."""
     u = along_of(segment, x, y)
     v = offset_of(segment, x, y)
@@ -407,7 +407,7 @@ def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParam
 
 def _with_landmark(update: ChainUpdate, index: int, landmark: Landmark) -> ChainUpdate:
     """Return the update with the landmark at ``index`` replaced."""
-    at = min(max(index, 0), LANDMARKS - 1)
+    at = min(max(index, 0), MAX_LANDMARKS - 1)
     return update._replace(landmarks=update.landmarks[:at] + (landmark,) + update.landmarks[at + 1 :])
 
 
@@ -422,7 +422,7 @@ def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params
     """Return which segment of the map, other than number ``index``, is the same side as a new one; -1: none."""
     if new.type != LandmarkType.SEGMENT:
         return -1
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         other = landmarks[number]
         if number != index and other.type == LandmarkType.SEGMENT and math.cos(other.heading - new.heading) > 0.0:
             turn = wrap_angle(other.heading - new.heading)

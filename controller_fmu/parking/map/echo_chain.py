@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from controller_fmu.parking.measurement.sensor import SensorPose
 
-CHAIN = 96
+MAX_ECHOES = 96
 """Echoes of a chain; a longer one keeps every second of them and goes on at twice the spacing."""
-SPACING = 0.04
+ECHO_SPACING = 0.04
 """Least distance [m] between the sensor positions of two echoes."""
 MAX_SLOPE = 0.7
 """Change of range per metre: sine of the widest half cone, and of a sensor that looks aside (34 + 8 deg)."""
@@ -41,8 +41,8 @@ class EchoChain(NamedTuple):
     """Echoes in a row, oldest first; the first ``used`` are valid."""
 
     used: int = 0
-    echoes: tuple[ChainEcho, ...] = (ChainEcho(),) * CHAIN
-    spacing: float = SPACING
+    echoes: tuple[ChainEcho, ...] = (ChainEcho(),) * MAX_ECHOES
+    spacing: float = ECHO_SPACING
     begins_at_edge: bool = False
     """Before its first echo there was a farther one, or none."""
     lost: int = 0
@@ -98,7 +98,7 @@ def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> Ec
     first = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     return EchoChain(
         used=1,
-        echoes=(first,) * CHAIN,
+        echoes=(first,) * MAX_ECHOES,
         begins_at_edge=begins_at_edge,
     )
 
@@ -111,21 +111,21 @@ def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoCh
     chain = chain._replace(lost=0)
     if dx * dx + dy * dy < chain.spacing * chain.spacing:
         return chain
-    if chain.used >= CHAIN:
-        chain = _thinned(chain)
+    if chain.used >= MAX_ECHOES:
+        chain = _thin(chain)
     echo = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     at = chain.used
-    echoes = tuple(echo if number == at else chain.echoes[number] for number in range(CHAIN))
+    echoes = tuple(echo if number == at else chain.echoes[number] for number in range(MAX_ECHOES))
     return chain._replace(used=at + 1, echoes=echoes)
 
 
 def from_echo(chain: EchoChain, first: int) -> EchoChain:
     """Return the chain without the echoes before ``first``: they were of another body, beyond an edge."""
-    echoes = tuple(chain.echoes[min(number + first, CHAIN - 1)] for number in range(CHAIN))
+    echoes = tuple(chain.echoes[min(number + first, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
     return chain._replace(used=chain.used - first, echoes=echoes, begins_at_edge=True, landmark=-1, fitted=0)
 
 
-def _thinned(chain: EchoChain) -> EchoChain:
+def _thin(chain: EchoChain) -> EchoChain:
     """Return the chain with every second echo, at twice the spacing."""
-    echoes = tuple(chain.echoes[min(2 * number, CHAIN - 1)] for number in range(CHAIN))
-    return chain._replace(used=CHAIN // 2, echoes=echoes, spacing=2.0 * chain.spacing, fitted=chain.fitted // 2)
+    echoes = tuple(chain.echoes[min(2 * number, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
+    return chain._replace(used=MAX_ECHOES // 2, echoes=echoes, spacing=2.0 * chain.spacing, fitted=chain.fitted // 2)

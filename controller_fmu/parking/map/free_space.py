@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 
-RAYS = 80
+MAX_RAYS = 80
 """Kept for each side."""
 RAY_SPACING = 0.2
 """Distance [m] between the sensor positions of two kept rays: they reach back 16 m, a slot at 30 deg and a car to each
@@ -25,13 +25,13 @@ class Ray(NamedTuple):
 class FreeSpace(NamedTuple):
     """Rays of the right and the left flank, oldest first."""
 
-    right: tuple[Ray, ...] = (Ray(),) * RAYS
-    left: tuple[Ray, ...] = (Ray(),) * RAYS
+    right: tuple[Ray, ...] = (Ray(),) * MAX_RAYS
+    left: tuple[Ray, ...] = (Ray(),) * MAX_RAYS
 
 
 def add_ray(rays: tuple[Ray, ...], sensor: SensorPose, measured: float) -> tuple[Ray, ...]:
     """Return the rays of a side with one more; the oldest is forgotten."""
-    last = rays[RAYS - 1]
+    last = rays[MAX_RAYS - 1]
     dx = sensor.x - last.sensor.x
     dy = sensor.y - last.sensor.y
     if last.range > 0.0 and dx * dx + dy * dy < RAY_SPACING * RAY_SPACING:
@@ -42,7 +42,7 @@ def add_ray(rays: tuple[Ray, ...], sensor: SensorPose, measured: float) -> tuple
 def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:
     """Return whether the point (x, y) [m] lies in the free part of at least ``MIN_RAYS`` rays."""
     count = 0
-    for number in range(RAYS):
+    for number in range(MAX_RAYS):
         ray = rays[number]
         dx = x - ray.sensor.x
         dy = y - ray.sensor.y

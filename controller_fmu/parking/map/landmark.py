@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from modelkit.geometry import Point
 
-LANDMARKS = 64
+MAX_LANDMARKS = 64
 """Capacity of the map."""
 
 
@@ -90,13 +90,13 @@ def offset_variance(landmark: Landmark, along: float) -> float:
 
 def replace_landmark(landmarks: tuple[Landmark, ...], index: int, landmark: Landmark) -> tuple[Landmark, ...]:
     """Return the landmarks with the one at ``index`` replaced."""
-    return tuple(landmark if number == index else landmarks[number] for number in range(LANDMARKS))
+    return tuple(landmark if number == index else landmarks[number] for number in range(MAX_LANDMARKS))
 
 
 def free_index(landmarks: tuple[Landmark, ...]) -> int:
     """Return a free place of the map; if there is none, that of the landmark with the fewest confirmations."""
     least = 0
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         if landmarks[number].type == LandmarkType.NONE:
             return number
         if landmarks[number].confirmations < landmarks[least].confirmations:

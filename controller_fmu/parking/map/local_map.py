@@ -16,7 +16,7 @@ from controller_fmu.parking.map.chain_update import (
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, length_of
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, length_of
 from controller_fmu.parking.map.oblique_side import ConeBoundaries, ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
@@ -32,7 +32,7 @@ from controller_fmu.parking.measurement.predicted_range import PredictedRange
 from controller_fmu.parking.measurement.sensor import (
     FRONT_LEFT_SIDE,
     FRONT_RIGHT_SIDE,
-    SENSORS,
+    MAX_SENSORS,
     ReadingStatus,
     SensorPose,
     range_variance,
@@ -46,7 +46,7 @@ from modelkit.vocabulary import Pose
 CONFIRMING_RANGE = 0.1
 """An echo this near [m] to the predicted one confirms a landmark: the expected echoes that it missed were dropouts."""
 FIRST_SIDE = FRONT_LEFT_SIDE
-SIDE_SENSORS = SENSORS - FIRST_SIDE
+SIDE_SENSORS = MAX_SENSORS - FIRST_SIDE
 
 
 class Measurement(NamedTuple):
@@ -64,7 +64,7 @@ class Measurement(NamedTuple):
 class LandmarkMap(NamedTuple):
     """Landmarks, chains of echoes, free space, and the odometry pose of the last cycle."""
 
-    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * MAX_LANDMARKS
     chains: tuple[EchoChain, ...] = (EchoChain(),) * SIDE_SENSORS
     """Of the sensors on the flanks."""
     boundaries: tuple[ConeBoundaries, ...] = (ConeBoundaries(),) * SIDE_SENSORS
@@ -91,7 +91,7 @@ def update_map(
         begun=True,
     )
     variance = range_variance(params.range_noise, sensors.resolution)
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, pose)
         status = reading_status(readings[number], sensors)
         measurement = Measurement(number, sensor, status, readings[number], variance, sensors.min_range)
@@ -143,7 +143,7 @@ def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
     return landmark.type != LandmarkType.NONE and landmark.confirmations >= params.confirmations
 
 
-def expected_range(
+def range_by_map(
     landmarks: tuple[Landmark, ...], sensor: SensorPose, planned: PredictedRange, free: float, params: MappingParams
 ) -> PredictedRange:
     """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer.
@@ -151,7 +151,7 @@ def expected_range(
     A side does not go on beyond an open end where the sensor measures at least ``free`` [m] through it.
     """
     nearest = planned
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, nearest.distance):
             predicted = predict_range(sensor, with_open_ends_extended(landmark))
@@ -170,7 +170,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
     sensor = measurement.sensor
     is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
     is_missed = False
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = local_map.landmarks[number]
         if is_in_reach(landmark, sensor, measurement.range + CONFIRMING_RANGE):
             is_echo = measurement.status == ReadingStatus.ECHO

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     along_of,
@@ -88,7 +88,7 @@ class ConeBoundaries(NamedTuple):
 class ObliqueUpdate(NamedTuple):
     """Landmarks and the boundaries of a sensor's cone after a reading."""
 
-    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * MAX_LANDMARKS
     boundaries: ConeBoundaries = ConeBoundaries()
     is_oblique: bool = False
     """The echo is of such a side: of no foot or corner."""

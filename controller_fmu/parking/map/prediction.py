@@ -9,7 +9,7 @@ the vehicle moves by -u e_d + (z x r) e_h, with u the vehicle's direction, and t
 
 import math
 
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from modelkit.vocabulary import Pose
 
@@ -38,4 +38,4 @@ def predict_landmarks(
     landmarks: tuple[Landmark, ...], vehicle: Pose, distance: float, params: MappingParams
 ) -> tuple[Landmark, ...]:
     """Return all landmarks after the vehicle, now at ``vehicle``, drove ``distance`` [m]."""
-    return tuple(predict_landmark(landmarks[number], vehicle, distance, params) for number in range(LANDMARKS))
+    return tuple(predict_landmark(landmarks[number], vehicle, distance, params) for number in range(MAX_LANDMARKS))

@@ -13,16 +13,16 @@ echoes cease, which the opening of the cone decides. Residuals beyond ``ROBUST_S
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.map.echo_chain import CHAIN, EchoChain
+from controller_fmu.parking.map.echo_chain import MAX_ECHOES, EchoChain
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from modelkit.maths import wrap_angle
 
-ITERATIONS = 5
+MAX_ITERATIONS = 5
 """Of Gauss and Newton."""
 ROBUST_SIGMA = 3.0
 """Standard deviations."""
 ASKEW_SIGMA = 0.15
-"""Sides along a sensor's path are within 9 deg of it (cars askew, a pass that is not parallel)."""
+"""Sides along a sensor's path are within 9 deg of it (misaligned cars, a pass that is not parallel)."""
 MAX_TURN = 0.3
 """One step turns the line by at most this [rad]: the ranges are not linear beyond."""
 MAX_SHIFT = 0.5
@@ -99,11 +99,11 @@ def fit_segment(chain: EchoChain, first: int, last: int, guess: SegmentGuess, va
     segment = initial._replace(start=first_start, end=max(end.along - end.inset, first_start + MIN_EXTENT))
     heading = initial.heading
     normal = NormalEquations()
-    for _ in range(ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         normal = _normal_equations(chain, first, last, segment, guess, variance)
         normal = _with_turn_prior(normal, wrap_angle(heading - segment.heading))
         step = solve(normal, normal.rc, normal.rq, normal.ra, normal.rb)
-        segment = _stepped(segment, step)
+        segment = _apply_step(segment, step)
     return SegmentFit(_with_covariance(segment, normal), normal.chi_square)
 
 
@@ -129,7 +129,7 @@ def _normal_equations(
     normal = NormalEquations(aa=aa, bb=bb, ra=(start.along - segment.start) * aa, rb=(end.along - segment.end) * bb)
     cos = math.cos(segment.heading)
     sin = math.sin(segment.heading)
-    for number in range(CHAIN):
+    for number in range(MAX_ECHOES):
         if first <= number <= last:
             echo = chain.echoes[number]
             dx = echo.x - segment.x
@@ -202,7 +202,7 @@ def solve(normal: NormalEquations, rc: float, rq: float, ra: float, rb: float) -
     return SegmentStep(shift, turn, start, end)
 
 
-def _stepped(segment: Landmark, step: SegmentStep) -> Landmark:
+def _apply_step(segment: Landmark, step: SegmentStep) -> Landmark:
     """Return the segment changed by a step of bounded size."""
     shift = min(max(step.shift, -MAX_SHIFT), MAX_SHIFT)
     turn = min(max(step.turn, -MAX_TURN), MAX_TURN)

@@ -15,8 +15,8 @@ from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
     PredictedRange,
-    predicted_range_to_point,
-    predicted_range_to_segment,
+    predict_range_to_point,
+    predict_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 
@@ -36,8 +36,8 @@ MIN_LENGTH = 0.3
 def predict_range(sensor: SensorPose, landmark: Landmark) -> PredictedRange:
     """Return the predicted range to a landmark as it is observed, without what may lie beyond an open end."""
     if landmark.type == LandmarkType.POINT:
-        return predicted_range_to_point(sensor, landmark.x, landmark.y)
-    return predicted_range_to_segment(sensor, start_point(landmark), end_point(landmark))
+        return predict_range_to_point(sensor, landmark.x, landmark.y)
+    return predict_range_to_segment(sensor, start_point(landmark), end_point(landmark))
 
 
 def is_in_reach(landmark: Landmark, sensor: SensorPose, reach: float) -> bool:

@@ -3,18 +3,18 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 
 MAX_TRANSPORT_DELAY = 0.01
 """Readings arrive at most this long [s] after their cycle ended: one communication step of the co-simulation."""
-NANOSECOND = 1e-9
+SECONDS_PER_NANOSECOND = 1e-9
 """[s]"""
 
 
 class MeasurementCycle(NamedTuple):
     """The last readings [m], since when the next are due [ns] (0: not due), and whether they are new."""
 
-    readings: tuple[float, ...] = (0.0,) * SENSORS
+    readings: tuple[float, ...] = (0.0,) * MAX_SENSORS
     due_ns: int = 0
     is_new: bool = False
 
@@ -31,7 +31,7 @@ def next_cycle(
         return before._replace(is_new=False)
     waited_ns = before.due_ns + dt_ns
     changed = is_due and before.due_ns > 0
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         changed = changed or readings[number] != before.readings[number]
     if not changed and seconds(waited_ns) <= MAX_TRANSPORT_DELAY:
         return before._replace(due_ns=waited_ns, is_new=False)
@@ -40,4 +40,4 @@ def next_cycle(
 
 def seconds(time_ns: int) -> float:
     """Return ``time_ns`` [ns] in seconds."""
-    return time_ns * NANOSECOND
+    return time_ns * SECONDS_PER_NANOSECOND

@@ -56,7 +56,7 @@ class _InBeam(NamedTuple):
     high: float
 
 
-def predicted_range_to_point(sensor: SensorPose, x: float, y: float) -> PredictedRange:
+def predict_range_to_point(sensor: SensorPose, x: float, y: float) -> PredictedRange:
     """Return the predicted range to the point (x, y) [m]; its origin is ``START``."""
     if not in_field_of_view(sensor, x, y):
         return PredictedRange()
@@ -65,7 +65,7 @@ def predicted_range_to_point(sensor: SensorPose, x: float, y: float) -> Predicte
     return PredictedRange(math.sqrt(dx * dx + dy * dy), EchoOrigin.START, x, y)
 
 
-def predicted_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> PredictedRange:
+def predict_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> PredictedRange:
     """Return the predicted range to the segment from ``a`` (start) to ``b`` (end) [m]."""
     beam = _part_in_beam(sensor, a, b)
     if beam.low > beam.high:
@@ -133,7 +133,7 @@ def range_to_polygons(sensor: SensorPose, vertices: tuple[Vertex, ...], max_rang
             if number > 0 and vertices[number - 1].polygon != a.polygon:
                 first = number
             b = vertices[next_index(vertices, number, first)]
-            predicted = predicted_range_to_segment(sensor, Point(a.x, a.y), Point(b.x, b.y))
+            predicted = predict_range_to_segment(sensor, Point(a.x, a.y), Point(b.x, b.y))
             if predicted.distance < nearest.distance:
                 nearest = predicted
     return nearest

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.vocabulary import Pose
 
-SENSORS = 12
+MAX_SENSORS = 12
 FRONT_LEFT_SIDE = 8
 FRONT_RIGHT_SIDE = 10
 NO_ECHO_FRACTION = 0.99

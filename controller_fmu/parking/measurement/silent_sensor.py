@@ -6,7 +6,7 @@ kind proves that the sensor works. With a dropout probability of 5 %, ``MISSED_E
 
 from typing import NamedTuple
 
-from controller_fmu.parking.measurement.sensor import SENSORS, ReadingStatus, is_on_one_side
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus, is_on_one_side
 
 MISSED_ECHOES = 6
 """In a row, by a working sensor once in 6e7 times (5 % dropouts)."""
@@ -15,12 +15,12 @@ MISSED_ECHOES = 6
 class MissedEchoes(NamedTuple):
     """How many expected echoes in a row each sensor has missed."""
 
-    counts: tuple[int, ...] = (0,) * SENSORS
+    counts: tuple[int, ...] = (0,) * MAX_SENSORS
 
 
 def count_missed_echo(before: MissedEchoes, sensor: int, status: int, is_expected: bool) -> MissedEchoes:
     """Return the counts after one reading: its ``ReadingStatus``, and whether an echo had to come."""
-    at = min(max(sensor, 0), SENSORS - 1)
+    at = min(max(sensor, 0), MAX_SENSORS - 1)
     count = before.counts[at]
     if status == ReadingStatus.ECHO or status == ReadingStatus.BLIND_ZONE:
         count = 0
@@ -31,17 +31,17 @@ def count_missed_echo(before: MissedEchoes, sensor: int, status: int, is_expecte
 
 def is_credible_miss(missed: MissedEchoes, sensor: int) -> bool:
     """Return whether a missing echo of a sensor (0 to 11) tells more of its surroundings than of the sensor."""
-    return missed.counts[min(max(sensor, 0), SENSORS - 1)] < MISSED_ECHOES // 2
+    return missed.counts[min(max(sensor, 0), MAX_SENSORS - 1)] < MISSED_ECHOES // 2
 
 
 def is_silent(missed: MissedEchoes, sensor: int) -> bool:
     """Return whether a sensor (0 to 11) is silent."""
-    return missed.counts[min(max(sensor, 0), SENSORS - 1)] >= MISSED_ECHOES
+    return missed.counts[min(max(sensor, 0), MAX_SENSORS - 1)] >= MISSED_ECHOES
 
 
 def has_blind_side(missed: MissedEchoes) -> bool:
     """Return whether two sensors beside each other on a bumper or a flank are silent: no other covers their cones."""
-    for number in range(SENSORS - 1):
+    for number in range(MAX_SENSORS - 1):
         if is_on_one_side(number, number + 1) and is_silent(missed, number) and is_silent(missed, number + 1):
             return True
     return False

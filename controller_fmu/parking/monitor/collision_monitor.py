@@ -16,7 +16,7 @@ from controller_fmu.parking.geometry.outline import (
 )
 from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     end_point,
@@ -24,21 +24,21 @@ from controller_fmu.parking.map.landmark import (
 )
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import EchoSurface
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
-POSES = 8
+MAX_POSES = 8
 """Poses of the swept outline: over half a metre they are 6 cm apart."""
 LOOK_AHEAD = 0.4
 """The outline is swept this far [m] beyond the stopping distance, so that the speed falls smoothly."""
-UNLIMITED = 100.0
+NO_LIMIT = 100.0
 """Speed [m/s] or distance [m] that is not limited."""
-APPROACH = 0.005
+MIN_APPROACH = 0.005
 """Only what comes nearer by more than this [m] counts: the vehicle may leave what it stands beside."""
-RESTART = 0.1
+MIN_RESTART_DISTANCE = 0.1
 """A standing vehicle sets out only where it may go at least this far [m]."""
 MAX_RATE_TIME = 2.0
 """An object's approach is foreseen for at most this long [s]."""
@@ -79,7 +79,7 @@ class OutlineSweep(NamedTuple):
     """The outline along the next ``horizon`` [m]."""
 
     horizon: float
-    poses: tuple[OutlineFrame, ...] = (OutlineFrame(),) * POSES
+    poses: tuple[OutlineFrame, ...] = (OutlineFrame(),) * MAX_POSES
     """At horizon / POSES, twice that and so on."""
     outline: VehicleOutline = VehicleOutline()
 
@@ -87,9 +87,9 @@ class OutlineSweep(NamedTuple):
 class MonitorVerdict(NamedTuple):
     """What the monitor allows."""
 
-    speed_limit: float = UNLIMITED
+    speed_limit: float = NO_LIMIT
     is_blocked: bool = False
-    free_distance: float = UNLIMITED
+    free_distance: float = NO_LIMIT
     """[m]"""
     is_mapped: bool = False
     """It is the map that limits it: waiting does not help."""
@@ -105,24 +105,24 @@ def monitor_collision(
 ) -> MonitorVerdict:
     """Return the speed limit for the motion in hand, by the distance that is free for it."""
     stop = stopping_distance(motion.speed, motion.delay, motion.deceleration)
-    horizon = min(stop + LOOK_AHEAD, max(motion.remaining, stop + APPROACH))
-    free = UNLIMITED
-    by_map = UNLIMITED
+    horizon = min(stop + LOOK_AHEAD, max(motion.remaining, stop + MIN_APPROACH))
+    free = NO_LIMIT
+    by_map = NO_LIMIT
     if horizon > 0.0:
         poses = tuple(
             outline_frame(
-                pose_along_arc(motion.pose, motion.direction * (horizon * (step + 1) / POSES), motion.curvature)
+                pose_along_arc(motion.pose, motion.direction * (horizon * (step + 1) / MAX_POSES), motion.curvature)
             )
-            for step in range(POSES)
+            for step in range(MAX_POSES)
         )
         sweep = OutlineSweep(horizon, poses, outline)
         by_map = free_by_map(motion, sweep, landmarks, params, mapping)
         by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
         by_map = min(by_map, by_echoes)
         free = min(by_map, free_by_echoes(motion, sweep, echoes, True, params))
-    limit = UNLIMITED if free >= UNLIMITED else speed_for_distance(free, motion.delay, motion.deceleration)
-    least = RESTART if motion.speed <= 0.0 else stop
-    return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free, by_map <= free)
+    limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, motion.deceleration)
+    least = MIN_RESTART_DISTANCE if motion.speed <= 0.0 else stop
+    return MonitorVerdict(limit, free < NO_LIMIT and free <= min(least, motion.remaining), free, by_map <= free)
 
 
 def free_by_map(
@@ -133,21 +133,21 @@ def free_by_map(
     mapping: MappingParams,
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to a confirmed landmark; UNLIMITED: farther."""
-    free = UNLIMITED
+    free = NO_LIMIT
     horizon = sweep.horizon
     outline = sweep.outline
     reach = horizon + math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach + outline.half_length):
             a = start_point(landmark)
             b = end_point(landmark)
-            least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
-            for step in range(1, POSES + 1):
-                travelled = horizon * step / POSES
+            least = line_distance(a, b, outline_frame(motion.pose), outline) - MIN_APPROACH
+            for step in range(1, MAX_POSES + 1):
+                travelled = horizon * step / MAX_POSES
                 distance = line_distance(a, b, sweep.poses[step - 1], outline)
                 if travelled < free and distance < params.map_distance and distance < least:
-                    free = horizon * (step - 1) / POSES
+                    free = horizon * (step - 1) / MAX_POSES
     return free
 
 
@@ -159,24 +159,24 @@ def free_by_echoes(
     params: MonitorParams,
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to an echo, as that approaches."""
-    free = UNLIMITED
+    free = NO_LIMIT
     horizon = sweep.horizon
     outline = sweep.outline
-    for number in range(SENSORS):
+    for number in range(MAX_SENSORS):
         echo = echoes[number]
         if echo.is_present and echo.is_unexplained == unexplained:
             a = side_start(echo)
             b = side_end(echo)
-            least = line_distance(a, b, outline_frame(motion.pose), outline) - APPROACH
-            for step in range(1, POSES + 1):
-                travelled = horizon * step / POSES
-                time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, APPROACH))
+            least = line_distance(a, b, outline_frame(motion.pose), outline) - MIN_APPROACH
+            for step in range(1, MAX_POSES + 1):
+                travelled = horizon * step / MAX_POSES
+                time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
                 required = params.map_distance
                 if echo.is_unexplained:
                     required = params.echo_distance + echo.closing_speed * time
                 distance = line_distance(a, b, sweep.poses[step - 1], outline)
                 if travelled < free and distance < required and (distance < least or echo.closing_speed > 0.0):
-                    free = horizon * (step - 1) / POSES
+                    free = horizon * (step - 1) / MAX_POSES
     return free
 
 
@@ -193,14 +193,14 @@ def side_end(echo: EchoObstacle) -> Point:
 
 
 def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the outline of a vehicle at ``pose`` to a landmark, at most ``UNLIMITED``."""
+    """Return the distance [m] from the outline of a vehicle at ``pose`` to a landmark, at most ``NO_LIMIT``."""
     if landmark.type == LandmarkType.POINT:
         return outline_distance(landmark.x, landmark.y, pose, outline)
     return line_distance(start_point(landmark), end_point(landmark), outline_frame(pose), outline)
 
 
 def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the outline of a vehicle at ``frame`` to the line a-b, at most ``UNLIMITED``."""
+    """Return the distance [m] from the outline of a vehicle at ``frame`` to the line a-b, at most ``NO_LIMIT``."""
     cos = frame.cos
     sin = frame.sin
     x = frame.x + outline.centre_ahead * cos
@@ -211,7 +211,7 @@ def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutli
         (b.x - x) * cos + (b.y - y) * sin,
         (b.y - y) * cos - (b.x - x) * sin,
         outline,
-        UNLIMITED * UNLIMITED,
+        NO_LIMIT * NO_LIMIT,
     )
     return math.sqrt(square)
 

@@ -1,8 +1,8 @@
 """One track per sensor of what it measures: range and closing rate by a Kalman filter, and whether the map explains it.
 
 State (r, v): r' = v, white acceleration of density q; measurement r + n. The vehicle's own motion towards the object is
-taken out first, so that v is the object's own. A track is tentative, confirmed after ``CONFIRMATIONS`` echoes, coasts
-over ``MAX_COASTING`` missed ones and ends.
+taken out first, so that v is the object's own. A track is tentative, confirmed after ``MIN_CONFIRMATIONS`` echoes,
+coasts over ``MAX_COASTING`` missed ones and ends.
 """
 
 import math
@@ -15,9 +15,9 @@ ACCELERATION_DENSITY = 4.0
 """Spectral density [m2/s3] of a pedestrian's acceleration: 2 m/s2 within a quarter of a second."""
 INITIAL_RATE_VARIANCE = 4.0
 """Objects move at up to 2 m/s, one standard deviation [m2/s2]."""
-GATE = 16.0
+INNOVATION_GATE = 16.0
 """Innovation gate, chi-square of one degree of freedom: 4 sigma."""
-CONFIRMATIONS = 2
+MIN_CONFIRMATIONS = 2
 """Echoes after which a track is confirmed: one alone may be noise."""
 MAX_COASTING = 4
 """Measurement cycles: 0.16 s."""
@@ -87,13 +87,13 @@ def update_track(
         return predicted._replace(status=TrackStatus.COASTING, missed=missed)
     s = predicted.rr + variance
     y = measured - predicted.range
-    if y * y > GATE * s:
+    if y * y > INNOVATION_GATE * s:
         return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
     kr = predicted.rr / s
     kv = predicted.rv / s
     confirmations = track.confirmations + 1
     return ObjectTrack(
-        TrackStatus.CONFIRMED if confirmations >= CONFIRMATIONS else TrackStatus.TENTATIVE,
+        TrackStatus.CONFIRMED if confirmations >= MIN_CONFIRMATIONS else TrackStatus.TENTATIVE,
         predicted.range + kr * y,
         predicted.rate + kv * y,
         predicted.rr - kr * predicted.rr,
@@ -109,7 +109,7 @@ def update_track(
 def with_approach(before: ObjectTrack, after: ObjectTrack, static_approach: float) -> ObjectTrack:
     """Return the track ``after`` a cycle with the sum of the approach beyond ``static_approach`` [m], the most that
     the sensor's own motion can bring about; a track that has just begun starts a new sum."""
-    if after.confirmations < CONFIRMATIONS:
+    if after.confirmations < MIN_CONFIRMATIONS:
         return after
     summed = before.approach if before.approach <= MIN_APPROACH else 0.0
     return after._replace(approach=max(0.0, summed + before.range - after.range - static_approach))

@@ -4,7 +4,7 @@ from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.search_tree import set_best
-from controller_fmu.parking.planning.work import NONE, PlanCount, PlanningWork, PlanValue, discard_word
+from controller_fmu.parking.planning.work import NO_INDEX, PlanCount, PlanningWork, PlanValue, discard_word
 from modelkit.vocabulary import Pose
 
 MAX_LENGTH = 10.0
@@ -19,7 +19,7 @@ def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int
         word = cheapest_word(work, words)
         cost = work.node_cost[node] + work.word_cost[word]
         if work.word_cost[word] > 1e8 or (
-            work.counts[PlanCount.BEST_NODE] != NONE and cost >= work.values[PlanValue.BEST_COST]
+            work.counts[PlanCount.BEST_NODE] != NO_INDEX and cost >= work.values[PlanValue.BEST_COST]
         ):
             return
         if _ends_free(work, word):

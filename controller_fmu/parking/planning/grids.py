@@ -6,13 +6,20 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
-from controller_fmu.parking.planning.work import BUCKETS, NONE, PlanCount, PlanningWork, clear_cost_to_go, set_edge
+from controller_fmu.parking.planning.work import (
+    BUCKET_COUNT,
+    NO_INDEX,
+    PlanCount,
+    PlanningWork,
+    clear_cost_to_go,
+    set_edge,
+)
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 HALF_DIAGONAL = 0.7072
 """Of a cell of side 1, rounded up."""
-UNREACHABLE = 1e6
+UNREACHABLE_COST = 1e6
 """Distance [m] from where the target cannot be reached."""
 NOT_QUEUED = -2
 
@@ -168,16 +175,16 @@ def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
     """Measure the distance [m] of a point from each free cell to the target, over eight neighbours (Dijkstra, Dial)."""
     region = problem.region
     count = region.cost_to_go_count
-    for number in range(BUCKETS):
-        work.bucket[number] = NONE
+    for number in range(BUCKET_COUNT):
+        work.bucket[number] = NO_INDEX
     row = _cell(problem.target.y - region.y0, region.cost_to_go_cell, count)
     column = _cell(problem.target.x - region.x0, region.cost_to_go_cell, count)
     start = row * count + column
     work.cost_to_go[start] = 0.0
-    work.cost_to_go_next[start] = NONE
+    work.cost_to_go_next[start] = NO_INDEX
     work.bucket[0] = start
-    for number in range(BUCKETS):
-        while work.bucket[number] != NONE:
+    for number in range(BUCKET_COUNT):
+        while work.bucket[number] != NO_INDEX:
             cell = work.bucket[number]
             work.bucket[number] = work.cost_to_go_next[cell]
             work.cost_to_go_next[cell] = NOT_QUEUED
@@ -200,7 +207,7 @@ def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
                 work.cost_to_go[other] = distance
                 if work.cost_to_go_next[other] == NOT_QUEUED:
                     number = math.floor(distance / region.cost_to_go_cell)
-                    number = number if number < BUCKETS else BUCKETS - 1
+                    number = number if number < BUCKET_COUNT else BUCKET_COUNT - 1
                     work.cost_to_go_next[other] = work.bucket[number]
                     work.bucket[number] = other
 
@@ -210,7 +217,7 @@ def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchR
     column = _cell(x - region.x0, region.cost_to_go_cell, region.cost_to_go_count)
     row = _cell(y - region.y0, region.cost_to_go_cell, region.cost_to_go_count)
     distance = work.cost_to_go[row * region.cost_to_go_count + column]
-    return distance if distance >= 0.0 else UNREACHABLE
+    return distance if distance >= 0.0 else UNREACHABLE_COST
 
 
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
@@ -220,7 +227,7 @@ def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
         if work.corner_of[vertex] > 0:
             after = next_corner(work, vertex)
             if not is_repeated(work, vertex, after):
-                count = add_edge(work, count, _seen_from(origin, work, vertex), _seen_from(origin, work, after), region)
+                count = add_edge(work, count, _as_from(origin, work, vertex), _as_from(origin, work, after), region)
     return count
 
 
@@ -240,7 +247,7 @@ def _is_at(work: PlanningWork, vertex: int, other: int) -> bool:
     return work.corner_x[vertex] == work.corner_x[other] and work.corner_y[vertex] == work.corner_y[other]
 
 
-def _seen_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:
+def _as_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:
     return Point(work.corner_x[vertex] - origin.x, work.corner_y[vertex] - origin.y)
 
 

@@ -11,7 +11,7 @@ from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap
 from controller_fmu.parking.planning.clearance_margin import measure_clearance
 from controller_fmu.parking.planning.collision import clearance
 from controller_fmu.parking.planning.grids import (
-    UNREACHABLE,
+    UNREACHABLE_COST,
     add_edges,
     compute_cost_to_go,
     holonomic_cost_to_go,
@@ -20,7 +20,7 @@ from controller_fmu.parking.planning.grids import (
     mark_blocked_cells,
 )
 from controller_fmu.parking.planning.problem import PlanningRequest, SearchProblem
-from controller_fmu.parking.planning.search import FOUND, SEARCHING, begin_search, expand_next
+from controller_fmu.parking.planning.search import PATH_FOUND, SEARCH_ACTIVE, begin_search, expand_next
 from controller_fmu.parking.planning.search_schedule import (
     CLEARANCE_RESERVE,
     MIN_MARGIN,
@@ -175,10 +175,10 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
         _begin_stage(work, request, problem)
     elif phase == PlanningPhase.SEARCH:
         status = expand_next(work, problem)
-        if status == FOUND:
+        if status == PATH_FOUND:
             begin_smoothing(work, problem)
             work.counts[PlanCount.PHASE] = PlanningPhase.SMOOTH
-        elif status != SEARCHING:
+        elif status != SEARCH_ACTIVE:
             _next_stage(work, request)
     elif phase == PlanningPhase.SMOOTH:
         more = smooth(work, problem)
@@ -196,7 +196,7 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
             _finish(work, PlanningStatus.PLANNED)
 
 
-def planned_path(work: PlanningWork) -> PlannedPath:
+def path_of_plan(work: PlanningWork) -> PlannedPath:
     """Return the path that was found."""
     segments = tuple(
         _segment(work, number) if number < work.counts[PlanCount.BEST_SEGMENT_COUNT] else PathSegment()
@@ -282,7 +282,7 @@ def _begin_stage(work: PlanningWork, request: PlanningRequest, problem: SearchPr
     """Begin the search of the stage in hand, unless not even a point could get through."""
     mark_blocked_cells(work, work.counts[PlanCount.EDGE_COUNT], problem)
     compute_cost_to_go(work, problem)
-    if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE:
+    if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE_COST:
         _next_stage(work, request)
         return
     begin_search(work, problem)

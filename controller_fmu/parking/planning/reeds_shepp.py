@@ -18,9 +18,9 @@ from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
 LEFT_TURN = 2
-LINE = 1
-RIGHT = 0
-UNUSED = 1
+STRAIGHT_LINE = 1
+RIGHT_TURN = 0
+UNUSED_PIECE = 1
 MIN_WORD_LENGTH = 1e-6
 """A segment shorter than this, in radii, is left out."""
 
@@ -67,8 +67,8 @@ def list_words(work: PlanningWork, start: Pose, end: Pose, gear: float, lock: fl
     count = 0
     for side in range(2):
         mirror = 1.0 if side == 0 else -1.0
-        left = LEFT_TURN if side == 0 else RIGHT
-        right = RIGHT if side == 0 else LEFT_TURN
+        left = LEFT_TURN if side == 0 else RIGHT_TURN
+        right = RIGHT_TURN if side == 0 else LEFT_TURN
         goal = Pose(x, y * mirror, h * mirror)
         count = _three_pieces(work, count, goal, WordSymmetry(left, right, 1.0), arrival)
         for distance in range(2):
@@ -85,11 +85,11 @@ def _three_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetr
     sy = goal.y - 1.0 + math.cos(h)
     apart = math.sqrt(sx * sx + sy * sy)
     towards = math.atan2(sy, sx)
-    code = word_code(image.left, LINE, image.left, UNUSED, UNUSED)
+    code = word_code(image.left, STRAIGHT_LINE, image.left, UNUSED_PIECE, UNUSED_PIECE)
     count = _arcs(work, count, code, (towards, apart, h - towards), arrival)
     count = _arcs(work, count, code, (towards + PI, -apart, h - towards - PI), arrival)
     if apart <= 4.0:
-        code = word_code(image.left, image.right, image.left, UNUSED, UNUSED)
+        code = word_code(image.left, image.right, image.left, UNUSED_PIECE, UNUSED_PIECE)
         open_by = math.acos(0.25 * apart)
         for side in range(2):
             b = open_by if side == 0 else -open_by
@@ -104,7 +104,7 @@ def _three_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetr
     sy = goal.y - 1.0 - math.cos(h)
     square = sx * sx + sy * sy
     if square >= 4.0:
-        code = word_code(image.left, LINE, image.right, UNUSED, UNUSED)
+        code = word_code(image.left, STRAIGHT_LINE, image.right, UNUSED_PIECE, UNUSED_PIECE)
         line = math.sqrt(square - 4.0)
         towards = math.atan2(sy, sx)
         along = towards + math.atan2(2.0, line)
@@ -135,7 +135,7 @@ def _more_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetry
     py = goal.y - 1.0 - math.cos(h)
     square = px * px + py * py
     rho = 0.25 * (2.0 + math.sqrt(square))
-    code = word_code(image.left, image.right, image.left, image.right, UNUSED)
+    code = word_code(image.left, image.right, image.left, image.right, UNUSED_PIECE)
     if rho <= 1.0:
         u = math.acos(rho)
         t = _first_of_four(u, -u, px, py)
@@ -153,7 +153,7 @@ def _more_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetry
             t = wrap_angle(math.atan2((4.0 - u) * px - 2.0 * py, -2.0 * px + (u - 4.0) * py))
             v = wrap_angle(t - h)
             q = -0.5 * PI * time
-            code = word_code(image.left, image.right, LINE, image.left, image.right)
+            code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, image.right)
             count = _add(work, count, code, (time * t, q, time * u, q, time * v), arrival)
     count = _four_with_line(work, count, goal, image, False, arrival)
     back_x = goal.x * math.cos(h) + goal.y * math.sin(h)
@@ -176,10 +176,10 @@ def _four_with_line(
         u = image.time * (2.0 - r)
         v = image.time * wrap_angle(h - 0.5 * PI - t * image.time)
         if backwards:
-            code = word_code(image.left, LINE, image.right, image.left, UNUSED)
+            code = word_code(image.left, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
             count = _add(work, count, code, (v, u, q, t, 0.0), arrival)
         else:
-            code = word_code(image.left, image.right, LINE, image.left, UNUSED)
+            code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, UNUSED_PIECE)
             count = _add(work, count, code, (t, q, u, v, 0.0), arrival)
     px = goal.x + math.sin(h)
     py = goal.y - 1.0 - math.cos(h)
@@ -189,10 +189,10 @@ def _four_with_line(
         u = image.time * (2.0 - rho)
         v = image.time * wrap_angle(t * image.time + 0.5 * PI - h)
         if backwards:
-            code = word_code(image.right, LINE, image.right, image.left, UNUSED)
+            code = word_code(image.right, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
             count = _add(work, count, code, (v, u, q, t, 0.0), arrival)
         else:
-            code = word_code(image.left, image.right, LINE, image.right, UNUSED)
+            code = word_code(image.left, image.right, STRAIGHT_LINE, image.right, UNUSED_PIECE)
             count = _add(work, count, code, (t, q, u, v, 0.0), arrival)
     return count
 

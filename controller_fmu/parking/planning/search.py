@@ -5,7 +5,7 @@ import math
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, cheapest_word, try_analytic_expansion
 from controller_fmu.parking.planning.collision import free_distance
-from controller_fmu.parking.planning.grids import UNREACHABLE, holonomic_cost_to_go
+from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
 from controller_fmu.parking.planning.reeds_shepp import list_words
 from controller_fmu.parking.planning.search_tree import (
@@ -16,11 +16,11 @@ from controller_fmu.parking.planning.search_tree import (
     push_bucket,
 )
 from controller_fmu.parking.planning.work import (
-    BUCKETS,
+    BUCKET_COUNT,
     CROWDING_CELLS,
-    NODES,
-    NONE,
-    SLOTS,
+    HASH_SIZE,
+    MAX_NODES,
+    NO_INDEX,
     PlanCount,
     PlanningWork,
     PlanValue,
@@ -28,13 +28,13 @@ from controller_fmu.parking.planning.work import (
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
-SEARCHING = 0
-FOUND = 1
-NOTHING = 2
+SEARCH_ACTIVE = 0
+PATH_FOUND = 1
+NO_PATH_FOUND = 2
 
-ESTIMATED = 0
-EVALUATED = 1
-CLOSED = 2
+COST_ESTIMATED = 0
+COST_EVALUATED = 1
+NODE_CLOSED = 2
 
 FIRST_SUCCESSOR = 0.35
 """Length [m] of the shortest successor of a node."""
@@ -64,7 +64,7 @@ def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
                 work, problem.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), problem
             )
             work.values[PlanValue.FREE_AT_TARGET + 3 * gear + turn] = distance
-    push_open(work, Successor(problem.root, 0.0, 0.0, 0.0, NONE), problem)
+    push_open(work, Successor(problem.root, 0.0, 0.0, 0.0, NO_INDEX), problem)
 
 
 def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
@@ -74,22 +74,22 @@ def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
     """
     for _ in range(MAX_EVALUATIONS_PER_STEP):
         node = pop_lowest(work)
-        while node != NONE and work.node_state[node] == CLOSED:
+        while node != NO_INDEX and work.node_state[node] == NODE_CLOSED:
             node = pop_lowest(work)
         work.counts[PlanCount.EVALUATIONS] = work.counts[PlanCount.EVALUATIONS] + 1
-        if node == NONE or is_spent(work, problem):
-            return NOTHING if work.counts[PlanCount.BEST_NODE] == NONE else FOUND
+        if node == NO_INDEX or is_spent(work, problem):
+            return NO_PATH_FOUND if work.counts[PlanCount.BEST_NODE] == NO_INDEX else PATH_FOUND
         waits = evaluate(work, node, problem)
         if not waits:
             expand(work, node, problem)
-            return FOUND if is_settled(work) else SEARCHING
-    return SEARCHING
+            return PATH_FOUND if is_settled(work) else SEARCH_ACTIVE
+    return SEARCH_ACTIVE
 
 
 def is_spent(work: PlanningWork, problem: SearchProblem) -> bool:
     """Return whether the search has done all the work it may."""
     most = problem.stage.max_expansions
-    full = work.counts[PlanCount.NODE_COUNT] > NODES - MAX_SUCCESSORS
+    full = work.counts[PlanCount.NODE_COUNT] > MAX_NODES - MAX_SUCCESSORS
     return (
         full
         or work.counts[PlanCount.EXPANSIONS] >= most
@@ -101,21 +101,22 @@ def is_settled(work: PlanningWork) -> bool:
     """Return whether a distance is found and some more have been looked for."""
     found_at = work.counts[PlanCount.FIRST_FOUND_AT]
     return (
-        work.counts[PlanCount.BEST_NODE] != NONE and work.counts[PlanCount.EXPANSIONS] > found_at + found_at // 2 + 20
+        work.counts[PlanCount.BEST_NODE] != NO_INDEX
+        and work.counts[PlanCount.EXPANSIONS] > found_at + found_at // 2 + 20
     )
 
 
 def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
     """Work out what a distance through a node will cost; returns whether it has to wait, put back into the queue."""
     pose = pose_of(work, node)
-    if work.node_state[node] == ESTIMATED:
+    if work.node_state[node] == COST_ESTIMATED:
         words = list_words(work, pose, problem.target, gear_of(work, node), lock_of(work, node, problem), problem)
         shortest = work.word_cost[cheapest_word(work, words)]
         cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
         work.node_cost_estimate[node] = shortest if shortest > cost_to_go else cost_to_go
-        work.node_state[node] = EVALUATED
+        work.node_state[node] = COST_EVALUATED
     if work.node_cost[node] + work.node_cost_estimate[node] >= bound_cost(work):
-        work.node_state[node] = CLOSED
+        work.node_state[node] = NODE_CLOSED
         return True
     crowd = problem.stage.resolution.crowding_cost * work.crowding[region_of(pose, problem)]
     bucket = bucket_of(
@@ -129,8 +130,8 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
 
 def bound_cost(work: PlanningWork) -> float:
     """Return the cost [m] of the best path found, by this search or one before it; nodes that cost more are no use."""
-    known = work.values[PlanValue.BEST_PATH_COST] if work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0 else UNREACHABLE
-    found = work.values[PlanValue.BEST_COST] if work.counts[PlanCount.BEST_NODE] != NONE else UNREACHABLE
+    known = work.values[PlanValue.BEST_PATH_COST] if work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0 else UNREACHABLE_COST
+    found = work.values[PlanValue.BEST_COST] if work.counts[PlanCount.BEST_NODE] != NO_INDEX else UNREACHABLE_COST
     return min(known, found)
 
 
@@ -139,15 +140,15 @@ def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
     pose = pose_of(work, node)
     gear = gear_of(work, node)
     lock = lock_of(work, node, problem)
-    none_yet = work.counts[PlanCount.BEST_NODE] == NONE
+    none_yet = work.counts[PlanCount.BEST_NODE] == NO_INDEX
     count_expansion(work, region_of(pose, problem))
-    work.node_state[node] = CLOSED
+    work.node_state[node] = NODE_CLOSED
     work.counts[PlanCount.EXPANSIONS] = work.counts[PlanCount.EXPANSIONS] + 1
     measure_free_distances(work, pose, problem)
     words = list_words(work, pose, problem.target, gear, lock, problem)
     try_analytic_expansion(work, node, pose, words, problem)
     generate_successors(work, node, pose, gear, lock, problem)
-    if none_yet and work.counts[PlanCount.BEST_NODE] != NONE:
+    if none_yet and work.counts[PlanCount.BEST_NODE] != NO_INDEX:
         work.counts[PlanCount.FIRST_FOUND_AT] = work.counts[PlanCount.EXPANSIONS]
 
 
@@ -169,7 +170,7 @@ def lock_of(work: PlanningWork, node: int, problem: SearchProblem) -> float:
 def bucket_of(cost: float) -> int:
     """Return the bucket of the queue for a cost [m]."""
     bucket = math.floor(cost * BUCKETS_PER_METRE)
-    return bucket if bucket < BUCKETS else BUCKETS - 1
+    return bucket if bucket < BUCKET_COUNT else BUCKET_COUNT - 1
 
 
 def region_of(pose: Pose, problem: SearchProblem) -> int:
@@ -215,17 +216,17 @@ def generate_successors(
             here = Successor(pose, cost, 0.0, k, node)
             distance = FIRST_SUCCESSOR
             while distance < free - MIN_LENGTH:
-                push_open(work, _driven(here, direction, distance), problem)
+                push_open(work, _drive(here, direction, distance), problem)
                 distance = distance * SUCCESSOR_RATIO
             if MIN_LENGTH < free < 1.0:
                 for part in range(1, 4):
                     distance = 0.25 * part * free
-                    push_open(work, _driven(here, direction, distance), problem)
+                    push_open(work, _drive(here, direction, distance), problem)
             if free > MIN_LENGTH:
-                push_open(work, _driven(here, direction, free), problem)
+                push_open(work, _drive(here, direction, free), problem)
 
 
-def _driven(here: Successor, direction: float, distance: float) -> Successor:
+def _drive(here: Successor, direction: float, distance: float) -> Successor:
     """Return the child ``distance`` [m] further on."""
     return Successor(
         pose_along_arc(here.pose, direction * distance, here.curvature),
@@ -239,13 +240,13 @@ def _driven(here: Successor, direction: float, distance: float) -> Successor:
 def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) -> None:
     """Add a node unless its cell has one that is as cheap."""
     key = key_of(successor.pose, successor.distance, problem)
-    slot = (key * 40503 // 64) % SLOTS
+    slot = (key * 40503 // 64) % HASH_SIZE
     other = work.slot[slot]
-    while other != NONE:
+    while other != NO_INDEX:
         if work.node_key[other] == key and work.node_cost[other] <= successor.cost + 0.02:
             return
         if work.node_key[other] == key:
-            work.node_state[other] = CLOSED
+            work.node_state[other] = NODE_CLOSED
         other = work.node_slot[other]
     node = add_node(work, successor, key, slot)
     push_bucket(work, node, bucket_of(heuristic(work, successor.pose, successor.cost, problem)))

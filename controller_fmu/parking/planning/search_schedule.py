@@ -12,12 +12,12 @@ from controller_fmu.parking.planning.problem import (
 from controller_fmu.parking.planning.work import COST_TO_GO_CELLS, EDGE_CELLS, PlanCount, PlanningWork, PlanValue
 from modelkit.vocabulary import Pose
 
-DEG = math.pi / 180.0
-COARSE = SearchResolution(1.0, 20.0 * DEG, refinement=1.0, heuristic_weight=4.0, crowding_cost=3.0)
-MEDIUM = SearchResolution(0.7, 14.0 * DEG, refinement=2.0, heuristic_weight=3.0, crowding_cost=3.0)
-FINE = SearchResolution(0.5, 10.0 * DEG, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
-FINER = SearchResolution(0.3, 6.0 * DEG, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
-EXHAUSTIVE = SearchResolution(0.15, 3.0 * DEG, refinement=4.0, heuristic_weight=1.0, crowding_cost=0.0)
+RADIANS_PER_DEGREE = math.pi / 180.0
+COARSE = SearchResolution(1.0, 20.0 * RADIANS_PER_DEGREE, refinement=1.0, heuristic_weight=4.0, crowding_cost=3.0)
+MEDIUM = SearchResolution(0.7, 14.0 * RADIANS_PER_DEGREE, refinement=2.0, heuristic_weight=3.0, crowding_cost=3.0)
+FINE = SearchResolution(0.5, 10.0 * RADIANS_PER_DEGREE, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
+FINER = SearchResolution(0.3, 6.0 * RADIANS_PER_DEGREE, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
+EXHAUSTIVE = SearchResolution(0.15, 3.0 * RADIANS_PER_DEGREE, refinement=4.0, heuristic_weight=1.0, crowding_cost=0.0)
 """Cells shrink as fast as their headings; the last orders nodes by their true cost and leaves none out."""
 SEARCH_SCHEDULE = (
     SearchStage(COARSE, 1.0, 80),

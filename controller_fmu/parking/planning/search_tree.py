@@ -2,10 +2,10 @@
 
 from controller_fmu.parking.planning.problem import Successor
 from controller_fmu.parking.planning.work import (
-    BUCKETS,
+    BUCKET_COUNT,
     CROWDING_CELLS,
-    NONE,
-    SLOTS,
+    HASH_SIZE,
+    NO_INDEX,
     TREE_COUNTS,
     PlanCount,
     PlanningWork,
@@ -15,16 +15,16 @@ from controller_fmu.parking.planning.work import (
 
 def clear_tree(work: PlanningWork) -> None:
     """Empty tree, table and queue."""
-    for slot in range(SLOTS):
-        work.slot[slot] = NONE
-    for bucket in range(BUCKETS):
-        work.bucket[bucket] = NONE
+    for slot in range(HASH_SIZE):
+        work.slot[slot] = NO_INDEX
+    for bucket in range(BUCKET_COUNT):
+        work.bucket[bucket] = NO_INDEX
     for region in range(CROWDING_CELLS):
         work.crowding[region] = 0
     for which in range(TREE_COUNTS):
         work.counts[which] = 0
-    work.counts[PlanCount.LOWEST_BUCKET] = BUCKETS
-    work.counts[PlanCount.BEST_NODE] = NONE
+    work.counts[PlanCount.LOWEST_BUCKET] = BUCKET_COUNT
+    work.counts[PlanCount.BEST_NODE] = NO_INDEX
 
 
 def add_node(work: PlanningWork, successor: Successor, key: int, slot: int) -> int:
@@ -61,13 +61,13 @@ def push_bucket(work: PlanningWork, node: int, bucket: int) -> None:
 
 
 def pop_lowest(work: PlanningWork) -> int:
-    """Take the first node out of the lowest bucket that has any; returns it, or ``NONE``."""
+    """Take the first node out of the lowest bucket that has any; returns it, or ``NO_INDEX``."""
     bucket = work.counts[PlanCount.LOWEST_BUCKET]
-    while bucket < BUCKETS and work.bucket[bucket] == NONE:
+    while bucket < BUCKET_COUNT and work.bucket[bucket] == NO_INDEX:
         bucket += 1
     work.counts[PlanCount.LOWEST_BUCKET] = bucket
-    if bucket >= BUCKETS:
-        return NONE
+    if bucket >= BUCKET_COUNT:
+        return NO_INDEX
     node = work.bucket[bucket]
     work.bucket[bucket] = work.node_queue[node]
     return node

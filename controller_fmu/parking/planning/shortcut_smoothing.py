@@ -5,8 +5,8 @@ from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
 from controller_fmu.parking.planning.reeds_shepp import list_words
 from controller_fmu.parking.planning.work import (
-    NONE,
-    SEGMENTS,
+    NO_INDEX,
+    WORK_SEGMENTS,
     PlanCount,
     PlanningWork,
     PlanValue,
@@ -30,7 +30,7 @@ def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
     work.counts[PlanCount.SEGMENT_COUNT] = 0
     depth = 0
     node = work.counts[PlanCount.BEST_NODE]
-    while node != NONE and work.node_parent[node] != NONE:
+    while node != NO_INDEX and work.node_parent[node] != NO_INDEX:
         depth += 1
         node = work.node_parent[node]
     pose = problem.root
@@ -53,7 +53,7 @@ def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
 def append_segment(work: PlanningWork, pose: Pose, distance: float, k: float) -> Pose:
     """Add a segment to the end of the path, or to its last segment if that goes on alike; returns where it ends."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
-    if distance == 0.0 or count >= SEGMENTS:
+    if distance == 0.0 or count >= WORK_SEGMENTS:
         return pose
     if count > 0:
         last = work.segment_length[count - 1]
@@ -102,10 +102,10 @@ def end_of(work: PlanningWork, segment: int) -> Pose:
     return pose_along_arc(pose_at(work, segment), work.segment_length[segment], work.segment_curvature[segment])
 
 
-def joint_cost(distance: float, k: float, next_way: float, next_k: float, problem: SearchProblem) -> float:
+def joint_cost(distance: float, k: float, next_distance: float, next_k: float, problem: SearchProblem) -> float:
     """Return the cost [m] of going on from one segment to the next."""
     cost = abs(next_k - k) / problem.car.max_curvature * STEERING_COST
-    return cost + CUSP_COST if distance * next_way < 0.0 else cost
+    return cost + CUSP_COST if distance * next_distance < 0.0 else cost
 
 
 def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> float:
@@ -179,7 +179,7 @@ def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: Sea
     for number in range(5):
         if word_length(work, word, number) != 0.0:
             used += 1
-    if count + used - span > SEGMENTS:
+    if count + used - span > WORK_SEGMENTS:
         return False
     pose = pose_at(work, place)
     move_segments(work, place + span, count - place - span, used - span)

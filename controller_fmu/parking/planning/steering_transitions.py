@@ -38,8 +38,8 @@ MAX_END_ERROR = 1e-8
 """Distance [m] and heading [rad] that the path's end may be off the goal."""
 MIN_RELATIVE_DETERMINANT = 1e-6
 """Least determinant, as a fraction of what it is of directions at right angles."""
-SOLVED = -1
-UNSOLVED = -2
+EQUATION_SOLVED = -1
+EQUATION_UNSOLVED = -2
 ALL_JOINTS = -1
 NO_JOINT = -2
 
@@ -146,7 +146,7 @@ def _fit(work: PlanningWork, request: PlanningRequest, problem: SearchProblem, m
             return False
         work.arc_curvature[short] = UNBENDING_FACTOR * work.arc_curvature[short]
         short = _solve(work, start, request.goal.heading, request.dynamics)
-    return short == SOLVED and _is_free(
+    return short == EQUATION_SOLVED and _is_free(
         work, problem._replace(margin=MARGIN_FRACTION * work.values[PlanValue.BEST_PATH_MARGIN])
     )
 
@@ -229,8 +229,8 @@ def _solve(work: PlanningWork, start: Pose, heading: float, dynamics: DrivingDyn
             return _too_short(work)
         solved = _correct_lengths(work, end, turn)
         if not solved:
-            return UNSOLVED
-    return UNSOLVED
+            return EQUATION_UNSOLVED
+    return EQUATION_UNSOLVED
 
 
 def _lay_out(work: PlanningWork, dynamics: DrivingDynamics) -> None:
@@ -290,14 +290,14 @@ def _end(work: PlanningWork, start: Pose) -> Pose:
 
 
 def _too_short(work: PlanningWork) -> int:
-    """Return the first segment that is too short between its transitions, or ``SOLVED``."""
+    """Return the first segment that is too short between its transitions, or ``EQUATION_SOLVED``."""
     segment = 0
     for number in range(work.counts[PlanCount.SEGMENT_COUNT]):
         if work.segment_speed[number] == 0.0:
             if work.segment_length[number] * sign(work.best_length[segment]) < MIN_ARC:
                 return segment
             segment += 1
-    return SOLVED
+    return EQUATION_SOLVED
 
 
 class GoalNormalMatrix(NamedTuple):

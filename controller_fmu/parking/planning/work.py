@@ -8,22 +8,22 @@ from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
 from modelkit.vocabulary import Pose
 
-EDGES = 512
+MAX_EDGES = 512
 MAX_VERTICES = LOCAL_VERTICES + MAP_VERTICES
 EDGE_CELLS = 64
 EDGE_ITEMS = 32768
 COST_TO_GO_CELLS = 128
-NODES = 20_000
-SLOTS = 32768
+MAX_NODES = 20_000
+HASH_SIZE = 32768
 """Of the hash table, a power of two."""
-BUCKETS = 2048
+BUCKET_COUNT = 2048
 CROWDING_CELLS = 8192
-WORDS = 128
-SEGMENTS = 256
+MAX_WORDS = 128
+WORK_SEGMENTS = 256
 REQUEST_SIZE = 18
 MAX_CUSPS = REQUEST_SIZE - 1
 """Place of that number among those of the request."""
-NONE = -1
+NO_INDEX = -1
 
 
 class PlanningWork(NamedTuple):
@@ -32,10 +32,10 @@ class PlanningWork(NamedTuple):
     All of these are a memo: they follow from the request and the number of steps.
     """
 
-    edge_x1: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's first end")]
-    edge_y1: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's first end")]
-    edge_x2: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's second end")]
-    edge_y2: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's second end")]
+    edge_x1: Annotated[Floats, Column("d", MAX_EDGES, "m", "x of an edge's first end")]
+    edge_y1: Annotated[Floats, Column("d", MAX_EDGES, "m", "y of an edge's first end")]
+    edge_x2: Annotated[Floats, Column("d", MAX_EDGES, "m", "x of an edge's second end")]
+    edge_y2: Annotated[Floats, Column("d", MAX_EDGES, "m", "y of an edge's second end")]
     cell_start: Annotated[Ints, Column("i", EDGE_CELLS * EDGE_CELLS + 1, "1", "where a cell's list of edges begins")]
     cell_edge: Annotated[Ints, Column("h", EDGE_ITEMS, "1", "edges by cell")]
     cost_to_go: Annotated[
@@ -44,40 +44,46 @@ class PlanningWork(NamedTuple):
     cost_to_go_next: Annotated[
         Ints, Column("i", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "1", "next cell of the same bucket")
     ]
-    bucket: Annotated[Ints, Column("i", BUCKETS, "1", "first node, or cell, of a bucket of the queue")]
-    slot: Annotated[Ints, Column("i", SLOTS, "1", "first node of a slot of the hash table")]
-    node_x: Annotated[Floats, Column("f", NODES, "m", "x of the rear axle")]
-    node_y: Annotated[Floats, Column("f", NODES, "m", "y of the rear axle")]
-    node_heading: Annotated[Floats, Column("f", NODES, "rad", "heading")]
-    node_cost: Annotated[Floats, Column("f", NODES, "m", "cost from the root")]
-    node_cost_estimate: Annotated[Floats, Column("f", NODES, "m", "estimated cost from it to the target")]
-    node_length: Annotated[Floats, Column("f", NODES, "m", "distance from the parent, reverse negative")]
-    node_curvature: Annotated[Floats, Column("f", NODES, "1/m", "curvature of that segment")]
-    node_parent: Annotated[Ints, Column("h", NODES, "1", "the node before")]
-    node_key: Annotated[Ints, Column("i", NODES, "1", "cell of poses")]
-    node_queue: Annotated[Ints, Column("h", NODES, "1", "next node of the same bucket")]
-    node_slot: Annotated[Ints, Column("h", NODES, "1", "next node of the same slot")]
-    node_state: Annotated[Ints, Column("h", NODES, "1", "0 estimated, 1 evaluated, 2 closed")]
+    bucket: Annotated[Ints, Column("i", BUCKET_COUNT, "1", "first node, or cell, of a bucket of the queue")]
+    slot: Annotated[Ints, Column("i", HASH_SIZE, "1", "first node of a slot of the hash table")]
+    node_x: Annotated[Floats, Column("f", MAX_NODES, "m", "x of the rear axle")]
+    node_y: Annotated[Floats, Column("f", MAX_NODES, "m", "y of the rear axle")]
+    node_heading: Annotated[Floats, Column("f", MAX_NODES, "rad", "heading")]
+    node_cost: Annotated[Floats, Column("f", MAX_NODES, "m", "cost from the root")]
+    node_cost_estimate: Annotated[Floats, Column("f", MAX_NODES, "m", "estimated cost from it to the target")]
+    node_length: Annotated[Floats, Column("f", MAX_NODES, "m", "distance from the parent, reverse negative")]
+    node_curvature: Annotated[Floats, Column("f", MAX_NODES, "1/m", "curvature of that segment")]
+    node_parent: Annotated[Ints, Column("h", MAX_NODES, "1", "the node before")]
+    node_key: Annotated[Ints, Column("i", MAX_NODES, "1", "cell of poses")]
+    node_queue: Annotated[Ints, Column("h", MAX_NODES, "1", "next node of the same bucket")]
+    node_slot: Annotated[Ints, Column("h", MAX_NODES, "1", "next node of the same slot")]
+    node_state: Annotated[Ints, Column("h", MAX_NODES, "1", "0 estimated, 1 evaluated, 2 closed")]
     crowding: Annotated[Ints, Column("h", CROWDING_CELLS, "1", "how often nodes of a region have been taken up")]
-    word_cost: Annotated[Floats, Column("d", WORDS, "m", "cost of a word")]
-    word_code: Annotated[Ints, Column("i", WORDS, "1", "its turns, digits to the base of 3")]
-    word_a: Annotated[Floats, Column("d", WORDS, "m", "distance of its first segment")]
-    word_b: Annotated[Floats, Column("d", WORDS, "m", "distance of its second segment")]
-    word_c: Annotated[Floats, Column("d", WORDS, "m", "distance of its third segment")]
-    word_d: Annotated[Floats, Column("d", WORDS, "m", "distance of its fourth segment")]
-    word_e: Annotated[Floats, Column("d", WORDS, "m", "distance of its fifth segment")]
-    segment_length: Annotated[Floats, Column("d", SEGMENTS, "m", "distance of a segment of the path")]
-    segment_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
-    segment_speed: Annotated[Floats, Column("d", SEGMENTS, "m/s", "its largest speed on a transition: see PathSegment")]
-    segment_x: Annotated[Floats, Column("d", SEGMENTS, "m", "x where it begins")]
-    segment_y: Annotated[Floats, Column("d", SEGMENTS, "m", "y where it begins")]
-    segment_heading: Annotated[Floats, Column("d", SEGMENTS, "rad", "heading where it begins")]
-    best_length: Annotated[Floats, Column("d", SEGMENTS, "m", "distance of a segment of the best path yet")]
-    best_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
-    best_speed: Annotated[Floats, Column("d", SEGMENTS, "m/s", "its largest speed: see PathSegment")]
-    best_clearance: Annotated[Floats, Column("d", SEGMENTS, "m", "room about its begin: see PathSegment")]
-    transition_fraction: Annotated[Floats, Column("d", SEGMENTS, "1", "fraction requested of the transition before it")]
-    arc_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "curvature of a segment between its transitions")]
+    word_cost: Annotated[Floats, Column("d", MAX_WORDS, "m", "cost of a word")]
+    word_code: Annotated[Ints, Column("i", MAX_WORDS, "1", "its turns, digits to the base of 3")]
+    word_a: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its first segment")]
+    word_b: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its second segment")]
+    word_c: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its third segment")]
+    word_d: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its fourth segment")]
+    word_e: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its fifth segment")]
+    segment_length: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "distance of a segment of the path")]
+    segment_curvature: Annotated[Floats, Column("d", WORK_SEGMENTS, "1/m", "its curvature")]
+    segment_speed: Annotated[
+        Floats, Column("d", WORK_SEGMENTS, "m/s", "its largest speed on a transition: see PathSegment")
+    ]
+    segment_x: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "x where it begins")]
+    segment_y: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "y where it begins")]
+    segment_heading: Annotated[Floats, Column("d", WORK_SEGMENTS, "rad", "heading where it begins")]
+    best_length: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "distance of a segment of the best path yet")]
+    best_curvature: Annotated[Floats, Column("d", WORK_SEGMENTS, "1/m", "its curvature")]
+    best_speed: Annotated[Floats, Column("d", WORK_SEGMENTS, "m/s", "its largest speed: see PathSegment")]
+    best_clearance: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "room about its begin: see PathSegment")]
+    transition_fraction: Annotated[
+        Floats, Column("d", WORK_SEGMENTS, "1", "fraction requested of the transition before it")
+    ]
+    arc_curvature: Annotated[
+        Floats, Column("d", WORK_SEGMENTS, "1/m", "curvature of a segment between its transitions")
+    ]
     corner_x: Annotated[Floats, Column("d", MAX_VERTICES, "m", "x of a corner of the requested scene")]
     corner_y: Annotated[Floats, Column("d", MAX_VERTICES, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", MAX_VERTICES, "1", "its polygon")]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.map.free_space import Ray, is_free
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import (
@@ -22,14 +22,14 @@ from controller_fmu.parking.slots.candidate import (
     CAR_LENGTH_SIGMA,
     CAR_WIDTH,
     CAR_WIDTH_SIGMA,
-    DECIDED,
+    LOG_TEN,
     length_log_likelihood,
     row_point,
 )
 from controller_fmu.parking.slots.row import (
     ASKEW_VARIANCE,
+    MAX_MEMBERS,
     MAX_TILT,
-    MEMBERS,
     MIN_SIDE,
     NO_MEMBER,
     RowMember,
@@ -115,7 +115,7 @@ def find_angled_row(
     forwards = _row_of(_corners(landmarks, forward, vehicle, params), rays, forward, 1.0)
     backwards = _row_of(_corners(landmarks, backward, vehicle, params), rays, backward, -1.0)
     ratio = forwards.log_likelihood - backwards.log_likelihood
-    if abs(ratio) < DECIDED:
+    if abs(ratio) < LOG_TEN:
         return SlotRow(vehicle, side)
     return forwards.row if ratio > 0.0 else backwards.row
 
@@ -132,7 +132,7 @@ def oblique_sides(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, p
     cosine = 0.0
     oblique = 0.0
     along = 0.0
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         if _is_oblique(landmark, vehicle, side, params):
             weight = 1.0 / (landmark.hh + ASKEW_VARIANCE)
@@ -172,7 +172,7 @@ def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow
     bay = NO_MEMBER
     last = NO_MEMBER
     last_car = NO_MEMBER
-    for _ in range(MEMBERS):
+    for _ in range(MAX_MEMBERS):
         first = _next_corner(corners, line, last)
         if first > -NO_MEMBER:
             last = first - 0.5 * CAR_WIDTH
@@ -185,7 +185,7 @@ def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow
             elif free > 0:
                 car = _as_post(car, lean)
             row = row._replace(
-                members=tuple(car if number == row.used else row.members[number] for number in range(MEMBERS)),
+                members=tuple(car if number == row.used else row.members[number] for number in range(MAX_MEMBERS)),
                 used=row.used + 1,
             )
     total += length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA) if bay < 0.5 * NO_MEMBER else 0.0
@@ -206,7 +206,7 @@ def _corners(
 ) -> tuple[RoadCorner, ...]:
     """Return the corners at the road of oblique sides and points beside the vehicle."""
     corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         is_side = _is_oblique(landmark, vehicle, row.side, params)
         is_point = landmark.type == LandmarkType.POINT and is_confirmed(landmark, params)
@@ -297,7 +297,7 @@ def visible_log_likelihood(deviation: float) -> float:
     """
     z = abs(deviation)
     tail = 0.5 * math.exp(-0.717 * z - 0.416 * z * z)
-    return max(math.log(tail if deviation > 0.0 else 1.0 - tail), -2.0 * DECIDED)
+    return max(math.log(tail if deviation > 0.0 else 1.0 - tail), -2.0 * LOG_TEN)
 
 
 def _car_of(corners: tuple[RoadCorner, ...], line: CornerLine, first: float, lean: float, side: float) -> RowMember:

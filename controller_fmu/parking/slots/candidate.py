@@ -15,16 +15,16 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.free_space import Ray, is_free
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, segment_point
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MEMBER_GAP, MEMBERS, ROW_DEPTH, RowMember, SlotRow
+from controller_fmu.parking.slots.row import MAX_MEMBERS, MEMBER_GAP, ROW_DEPTH, RowMember, SlotRow
 from modelkit.geometry import Point
 
 UNKNOWN_DEPTH = 50.0
 """Depth [m] of a gap in which nothing was detected."""
-DECIDED = 2.3
+LOG_TEN = 2.3
 """Log of the likelihood ratio ten."""
 CAR_LENGTH = 4.4
 CAR_LENGTH_SIGMA = 0.5
@@ -48,9 +48,9 @@ MAX_PARALLEL_DEPTH = 3.0
 BAY_WIDTH = 2.6
 BAY_SIGMA = 0.3
 """Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
-INSET = 0.25
+MIN_INSET = 0.25
 """What stands at least this far [m] from both neighbours and behind their fronts is in the gap."""
-SAMPLES = 9
+SAMPLE_COUNT = 9
 FREE_DEPTHS = (0.4, 1.0, 1.6)
 FREE_FRACTIONS = (0.4, 0.5, 0.6)
 MIN_FREE = 4
@@ -108,7 +108,7 @@ def find_slot(
         beside = _candidate(_with_end(row, outline, slot), 0, landmarks, outline, slot, params)
         is_free_there = beside.type == SlotType.PERPENDICULAR and is_observed_free(beside, rays)
         found = beside if is_free_there else found
-    for number in range(MEMBERS - 1):
+    for number in range(MAX_MEMBERS - 1):
         if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
             candidate = _candidate(row, number, landmarks, outline, slot, params)
             candidate = _as_driveway(candidate, rays, outline, slot)
@@ -126,8 +126,8 @@ def _with_end(row: SlotRow, outline: VehicleOutline, slot: SlotParams) -> SlotRo
     front = last.front + row.slope * row.side * (width + CAR_WIDTH)
     end = RowMember(start, start + CAR_WIDTH, front, False, False, front, front)
     return row._replace(
-        members=tuple(end if number == 0 else row.members[number - 1] for number in range(MEMBERS)),
-        used=min(row.used + 1, MEMBERS),
+        members=tuple(end if number == 0 else row.members[number - 1] for number in range(MAX_MEMBERS)),
+        used=min(row.used + 1, MAX_MEMBERS),
     )
 
 
@@ -141,7 +141,7 @@ def _candidate(
 ) -> SlotCandidate:
     """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
     ahead = row.members[number]
-    behind = row.members[min(number + 1, MEMBERS - 1)]
+    behind = row.members[min(number + 1, MAX_MEMBERS - 1)]
     found = _between_posts(SlotCandidate(row=row, behind=behind, ahead=ahead), landmarks, params)
     behind = found.behind
     ahead = found.ahead
@@ -154,7 +154,7 @@ def _candidate(
     least_width = 2.0 * outline.half_width + slot.room_across
     fits_parallel = width >= least_length
     fits_perpendicular = width >= least_width
-    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else DECIDED) and row.slope == 0.0
+    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else LOG_TEN) and row.slope == 0.0
     parallel = parallel if slot.wanted == SlotKind.NONE else slot.wanted == SlotKind.PARALLEL
     fits = fits_parallel if parallel else fits_perpendicular
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
@@ -175,14 +175,14 @@ def _between_posts(found: SlotCandidate, landmarks: tuple[Landmark, ...], params
     row = found.row
     behind = found.behind
     ahead = found.ahead
-    for post in range(LANDMARKS):
+    for post in range(MAX_LANDMARKS):
         at = point_to_frame(landmarks[post].x, landmarks[post].y, row.frame)
         deep = row.side * at.y
         is_post = landmarks[post].type == LandmarkType.POINT and is_confirmed(landmarks[post], params)
         if is_post and behind.end + MEMBER_GAP < at.x < 0.5 * (behind.end + ahead.start) and _is_in_row(deep, behind):
-            behind = behind._replace(end=at.x, end_front=deep, end_length=INSET)
+            behind = behind._replace(end=at.x, end_front=deep, end_length=MIN_INSET)
         if is_post and 0.5 * (behind.end + ahead.start) < at.x < ahead.start - MEMBER_GAP and _is_in_row(deep, ahead):
-            ahead = ahead._replace(start=at.x, start_front=deep, start_length=INSET)
+            ahead = ahead._replace(start=at.x, start_front=deep, start_length=MIN_INSET)
     return found._replace(behind=behind, ahead=ahead)
 
 
@@ -204,7 +204,7 @@ def _as_driveway(
     count = 0
     for fraction in FREE_FRACTIONS:
         x = candidate.behind.end + fraction * width
-        point = row_point(candidate.row, x, candidate.front + min(MAX_PARALLEL_DEPTH, candidate.depth - INSET))
+        point = row_point(candidate.row, x, candidate.front + min(MAX_PARALLEL_DEPTH, candidate.depth - MIN_INSET))
         if is_free(rays, point.x, point.y):
             count += 1
     if count == 0:
@@ -217,7 +217,7 @@ def _as_driveway(
 def log_likelihood_ratio(candidate: SlotCandidate) -> float:
     """Return ln P(observations | parallel) - ln P(observations | perpendicular)."""
     ratio = 0.0
-    for number in range(MEMBERS):
+    for number in range(MAX_MEMBERS):
         if number < candidate.row.used:
             member = candidate.row.members[number]
             length = member.end - member.start
@@ -231,13 +231,13 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
                 two = length_log_likelihood(length, is_complete, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
                 ratio -= max(one, two)
     if candidate.depth < MAX_PARALLEL_DEPTH:
-        ratio += 2.0 * DECIDED
+        ratio += 2.0 * LOG_TEN
     return ratio
 
 
 def merging_penalty(member: RowMember) -> float:
     """Return minus the log of the probability that two cars side by side are measured as one, as far off as a side."""
-    return MERGING_PENALTY if member.front > RESOLVED_FRONT else DECIDED
+    return MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
 
 
 def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
@@ -245,7 +245,7 @@ def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: 
     deviation = (length - mean) / sigma
     if not is_complete and deviation < 0.0:
         return 0.0
-    return -min(0.5 * deviation * deviation, 2.0 * DECIDED)
+    return -min(0.5 * deviation * deviation, 2.0 * LOG_TEN)
 
 
 def is_too_short_for_car(length: float) -> bool:
@@ -259,19 +259,19 @@ def gap_depth(
     """Return how deep [m] behind the neighbours' fronts the first landmark lies where a vehicle would stand."""
     row = candidate.row
     room = 0.5 * (candidate.ahead.start - candidate.behind.end)
-    inset = max(INSET, room - (outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width))
+    inset = max(MIN_INSET, room - (outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width))
     low = candidate.behind.end + inset
     high = candidate.ahead.start - inset
     depth = UNKNOWN_DEPTH
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         if landmark.type != LandmarkType.NONE and is_confirmed(landmark, params):
-            for sample in range(SAMPLES):
-                along = landmark.start + (landmark.end - landmark.start) * sample / (SAMPLES - 1)
+            for sample in range(SAMPLE_COUNT):
+                along = landmark.start + (landmark.end - landmark.start) * sample / (SAMPLE_COUNT - 1)
                 at = segment_point(landmark, along)
                 point = point_to_frame(at.x, at.y, row.frame)
                 deep = row.side * point.y - candidate.front
-                if low < point.x < high and deep > -INSET:
+                if low < point.x < high and deep > -MIN_INSET:
                     depth = min(depth, max(deep, 0.0))
     return depth
 

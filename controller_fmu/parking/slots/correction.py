@@ -4,7 +4,7 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, length_of, segment_point
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, length_of, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
@@ -28,7 +28,7 @@ def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], pa
     """Return a parallel slot between what has been measured of its neighbours' ends that face it."""
     corrected = candidate
     across = candidate.row.frame.heading + 0.5 * math.pi
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         angle = wrap_angle(landmark.heading - across)
         off = min(abs(angle), math.pi - abs(angle))
@@ -68,7 +68,7 @@ def correct_slot(
     corrected = candidate
     if candidate.type == SlotType.PERPENDICULAR:
         across = candidate.row.frame.heading + 0.5 * math.pi
-        for number in range(LANDMARKS):
+        for number in range(MAX_LANDMARKS):
             landmark = landmarks[number]
             is_side = landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params)
             angle = wrap_angle(landmark.heading - across)

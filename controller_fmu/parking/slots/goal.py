@@ -13,7 +13,7 @@ from controller_fmu.parking.slots.candidate import (
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import UNEVEN
+from controller_fmu.parking.slots.row import UNEVEN_SIGMA
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -33,7 +33,9 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
     else:
         room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
         uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.slope == 0.0 else 0.0
-        inward = min(0.5 * uneven, params.stand_out) if uneven > params.confidence * math.sqrt(2.0) * UNEVEN else 0.0
+        inward = (
+            min(0.5 * uneven, params.stand_out) if uneven > params.confidence * math.sqrt(2.0) * UNEVEN_SIGMA else 0.0
+        )
         deep = candidate.front + outline.half_length + min(inward, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)

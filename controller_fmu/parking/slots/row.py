@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.map.landmark import (
-    LANDMARKS,
+    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     end_point,
@@ -21,7 +21,7 @@ from controller_fmu.parking.map.params import MappingParams
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
-MEMBERS = 8
+MAX_MEMBERS = 8
 """Sides of a row that are kept: the slot's neighbours and the repetition on both sides."""
 MAX_TILT = 0.35
 """A side along the road is turned by less than this [rad] against the vehicle's path: 20 deg."""
@@ -33,7 +33,7 @@ MEMBER_GAP = 0.35
 """Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
 ASKEW_VARIANCE = 0.0025
 """Of the misalignment of cars in a row, by up to 5 deg either way [rad2]."""
-UNEVEN = 0.1
+UNEVEN_SIGMA = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9
 """Position [m] along the row where there is no side."""
@@ -67,7 +67,7 @@ class SlotRow(NamedTuple):
 
     frame: Pose = Pose()
     side: float = -1.0
-    members: tuple[RowMember, ...] = (RowMember(),) * MEMBERS
+    members: tuple[RowMember, ...] = (RowMember(),) * MAX_MEMBERS
     """From ahead to behind."""
     used: int = 0
     slope: float = 0.0
@@ -135,16 +135,16 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
 def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
     """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
     nearest = NO_MEMBER
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         member = side_as_member(landmarks[number], frame, side, params)
         if member.end > member.start:
             nearest = min(nearest, member.front)
     row = SlotRow(frame, side)
     last = NO_MEMBER
-    for _ in range(LANDMARKS):
+    for _ in range(MAX_LANDMARKS):
         best = RowMember()
         best_end = -NO_MEMBER
-        for number in range(LANDMARKS):
+        for number in range(MAX_LANDMARKS):
             member = side_as_member(landmarks[number], frame, side, params)
             is_of_row = member.end > member.start and member.front < nearest + ROW_DEPTH
             if is_of_row and best_end < member.end < last:
@@ -178,11 +178,13 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
             first.start_length,
             last.end_length,
         )
-        return row._replace(members=tuple(joined if number == at else row.members[number] for number in range(MEMBERS)))
-    if row.used >= MEMBERS:
+        return row._replace(
+            members=tuple(joined if number == at else row.members[number] for number in range(MAX_MEMBERS))
+        )
+    if row.used >= MAX_MEMBERS:
         return row
     return row._replace(
-        members=tuple(member if number == row.used else row.members[number] for number in range(MEMBERS)),
+        members=tuple(member if number == row.used else row.members[number] for number in range(MAX_MEMBERS)),
         used=row.used + 1,
     )
 
@@ -195,7 +197,7 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
     deepest = NO_MEMBER
-    for number in range(MEMBERS):
+    for number in range(MAX_MEMBERS):
         if number < row.used:
             deepest = min(deepest, row.members[number].front + ROW_DEPTH)
     total = 0.0
@@ -203,7 +205,7 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     of_cars = 0.0
     turn_of_cars = 0.0
     variance = 0.0
-    for number in range(LANDMARKS):
+    for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
         member = side_as_member(landmark, row.frame, row.side, params)
         if member.end > member.start:
@@ -235,7 +237,7 @@ def _line_direction(row: SlotRow) -> RowDirection:
     sy = 0.0
     sxx = 0.0
     sxy = 0.0
-    for number in range(MEMBERS):
+    for number in range(MAX_MEMBERS):
         if number < row.used:
             member = row.members[number]
             x = 0.5 * (member.start + member.end)
@@ -246,6 +248,6 @@ def _line_direction(row: SlotRow) -> RowDirection:
             sxx += x * x
             sxy += x * y
     spread = sxx - sx * sx / n if n > 0.0 else 0.0
-    if spread <= UNEVEN:
+    if spread <= UNEVEN_SIGMA:
         return RowDirection(0.0, PI)
-    return RowDirection(math.atan((sxy - sx * sy / n) / spread), UNEVEN / math.sqrt(spread))
+    return RowDirection(math.atan((sxy - sx * sy / n) / spread), UNEVEN_SIGMA / math.sqrt(spread))

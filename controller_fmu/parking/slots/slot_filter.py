@@ -18,7 +18,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
     PredictedRange,
     direction_of,
-    predicted_range_to_segment,
+    predict_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from controller_fmu.parking.slots.candidate import (
@@ -218,8 +218,8 @@ def predict_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPos
         sin = math.sin(slot_filter.state[at + 2])
         far_front = Point(corner.x + towards * width * cos, corner.y + towards * width * sin)
         far_flank = Point(corner.x - side * body * sin, corner.y + side * body * cos)
-        best = _nearer(best, predicted_range_to_segment(wide, corner, far_front), sensor, slot_filter, at)
-        best = _nearer(best, predicted_range_to_segment(wide, corner, far_flank), sensor, slot_filter, at)
+        best = _nearer(best, predict_range_to_segment(wide, corner, far_front), sensor, slot_filter, at)
+        best = _nearer(best, predict_range_to_segment(wide, corner, far_flank), sensor, slot_filter, at)
     if slot.depth < UNKNOWN_DEPTH:
         best = _nearer(best, _range_to_end(slot_filter, wide), sensor, slot_filter, END_INDEX)
     narrow = sensor._replace(cone_sin=sensor.cone_sin / CONE_SPREAD)
@@ -235,7 +235,7 @@ def _range_to_end(slot_filter: SlotFilter, sensor: SensorPose) -> PredictedRange
     a = state[END_INDEX] - (state[0] * nx + state[1] * ny)
     b = state[END_INDEX] - (state[AHEAD_OFFSET] * nx + state[AHEAD_OFFSET + 1] * ny)
     start = Point(state[0] + a * nx, state[1] + a * ny)
-    return predicted_range_to_segment(
+    return predict_range_to_segment(
         sensor, start, Point(state[AHEAD_OFFSET] + b * nx, state[AHEAD_OFFSET + 1] + b * ny)
     )
 

@@ -79,7 +79,7 @@ class GridCase(NamedTuple):
 
 @cache
 def cases(lot: int = 0) -> list[GridCase]:
-    """Return the whole grid; what is drawn by lot is drawn from the case's number and ``lot``."""
+    """Return the whole grid; random values follow from the case's number and ``lot``."""
     slots = [(kind, side, extra) for kind in EXTRA for side in SIDES for extra in EXTRA[kind]]
     found = []
     everything = itertools.product(CARS, slots, BESIDE, HEADINGS, BODIES)
@@ -142,7 +142,7 @@ def standing_of(case: GridCase) -> tuple[Target, Slot]:
 
 
 def scenario_of(case: GridCase) -> Scenario:
-    """Return the scenario of a case; the assist is told neither slot nor target."""
+    """Return the scenario of a case; the assist receives neither slot nor target."""
     vehicle, controller = parameters(case)
     target, slot = standing_of(case)
     return Scenario(

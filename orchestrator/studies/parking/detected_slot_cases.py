@@ -1,6 +1,6 @@
-"""Slots that have to be found, drawn by lot: kinds, angles, neighbours, pillars, ends, streets, sides, ways past.
+"""Slots to be found, sampled at random: kinds, angles, neighbours, pillars, ends, streets, sides, ways past.
 
-All of a run follows from its number and the lot. Corner A lies near the origin, the row to the right of x (to the left
+All of a run follows from its number and ``lot``. Corner A lies near the origin, the row to the right of x (to the left
 on the other side, as a mirror image), the street to its left.
 """
 
@@ -117,7 +117,7 @@ def boxes_of(case: DetectedSlotCase) -> list[Box]:
     """Return what stands around the slot on the right side, but for the street's other side."""
     length, width = size_of(case)
     place, draw = place_of(case), random.Random(case.number + SEED_STRIDE * case.lot + 17)
-    crooked = math.radians(5.0) if case.neighbours == "crooked" else 0.0
+    misalignment = math.radians(5.0) if case.neighbours == "crooked" else 0.0
     stagger = 0.25 if case.neighbours == "staggered" else 0.0
     post = 0.5 / math.sin(math.radians(case.angle)) if case.neighbours == "pillars" else 0.0
     next_one = (width + 0.7) / math.sin(math.radians(case.angle)) if case.angle else length + 0.8
@@ -125,7 +125,7 @@ def boxes_of(case: DetectedSlotCase) -> list[Box]:
     boxes = []
     for off in offs if case.neighbours != "one" else offs[:2]:
         far = draw.uniform(-stagger, stagger)
-        turn = draw.uniform(-crooked, crooked)
+        turn = draw.uniform(-misalignment, misalignment)
         boxes.append(
             {
                 "x": place.x + off + far * math.cos(place.into),

@@ -1,4 +1,4 @@
-"""Scenarios of the slots drawn by lot: the way past them, or out of them, what stands there, the car's errors."""
+"""Scenarios of the random slots: the path past them, or out of them, what stands there, the car's errors."""
 
 import math
 import random
@@ -33,7 +33,7 @@ WANTED = {"parallel": SlotKind.PARALLEL, "nose in": SlotKind.NOSE_IN, "tail in":
 HANDOVER_DISTANCE = 4.0
 """Out of a slot, the car hands over so far [m] past the neighbour's middle."""
 PARKED_POSE_ERROR = 0.05
-"""It stands in the slot so far off its middle [m], and so much askew [rad]."""
+"""It stands in the slot so far off its middle [m], and turned by so much [rad]."""
 TURNED = math.radians(2.0)
 AT_WALL = 0.5
 """Left between the driver's way past and the street's other side [m]."""
@@ -71,7 +71,7 @@ def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
 def out_of(case: DetectedSlotCase) -> Scenario:
     """Return the scenario in which the car stands in the slot and comes out into the street, to either side.
 
-    It is told the map, and where to hand over: along the street, its middle beyond the neighbour on that side.
+    It receives the map, and where to hand over: along the street, its middle beyond the neighbour on that side.
     """
     draw = random.Random(case.number + SEED_STRIDE * case.lot + 41)
     scenario, place, street = scenario_of(case, reported=True), place_of(case), _street(case)

@@ -18,7 +18,7 @@ from orchestrator.studies.sweep.table import Table
 
 FACTORS = ("angle", "neighbours", "end", "street", "wish")
 WAY = "way"
-"""A run of this is there to see whether there is a way."""
+"""A run with this shows whether there is a path."""
 PLANNING_TIME = 10.0
 
 
@@ -29,9 +29,9 @@ def study(
     out: bool = False,
     ways: bool = False,
 ) -> Study:
-    """Return so many runs; ``reported``: the same with the map and the target told, no search: what could be parked.
+    """Return so many runs; ``reported``: the same with the map and the target given, no search: what could be parked.
 
-    ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
+    ``out``: the car stands in the slot, receives the map, and comes out to either side. ``ways``: behind every run a
     short one in which the system receives the map and has ``PLANNING_TIME`` seconds to plan: whether a path exists.
     """
     scenarios = []
@@ -72,7 +72,7 @@ def _labels(case: DetectedSlotCase, of: str) -> dict[str, str | float]:
 def report(table: Table, folder: Path) -> int:
     """Print how many parked by each factor, and why others did not. Returns 1 if a run touched something.
 
-    With ``ways`` shares are of the slots for which there is a way.
+    With ``ways`` shares are of the slots for which there is a path.
     """
     names = (*FACTORS, "number", "of", "outcome", "reason", "min_clearance", "margin")
     every = [dict(zip(names, row, strict=True)) for row in zip(*(table.column(name) for name in names), strict=True)]

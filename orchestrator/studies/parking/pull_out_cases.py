@@ -1,6 +1,6 @@
-"""Slots that the assist comes out of, drawn by lot: kinds, sides, room, kerbs and walls, streets, neighbours, cars.
+"""Slots that the assist comes out of, at random: kinds, sides, room, kerbs and walls, streets, neighbours, cars.
 
-All of a run follows from its number and the lot. The row lies along x at y < 0, its line at y = 0, the road at y > 0;
+All of a run follows from its number and ``lot``. The row lies along x at y < 0, its line at y = 0, the road at y > 0;
 the car stands along the row, or across it with its nose to the road, and comes out to the left. To the right is the
 mirror image.
 """
@@ -156,7 +156,7 @@ def vehicle_of(case: PullOutCase) -> dict[str, Any]:
 
 
 def _passer(case: PullOutCase) -> dict[str, float]:
-    """Return a person on the road beside the slot, who stands there for a while, or walks off across the road then."""
+    """Return a pedestrian on the road beside the slot, who stays for a while, or then walks off across the road."""
     draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
     if case.passes == PASSES[0]:
         return {"length": 0.0}

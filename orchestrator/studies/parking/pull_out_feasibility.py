@@ -38,7 +38,7 @@ def goal_of(case: PullOutCase, along: float, out: float) -> Pose:
 
 
 def is_path(case: PullOutCase, goal: Pose) -> bool:
-    """Return whether the planner, told the scene as its map, finds a path from where the car stands to ``goal``."""
+    """Return whether the planner, with the scene as its map, finds a path from where the car stands to ``goal``."""
     car = car_parameters(CARS[case.car])
     scenario = Scenario(
         name="apa-out-path",

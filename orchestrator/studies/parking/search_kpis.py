@@ -176,7 +176,7 @@ def kpis(columns: Mapping[str, Array], rows: Array) -> Kpis:
 
 
 def groups(columns: Mapping[str, Array]) -> Iterator[tuple[str, Array]]:
-    """Yield name and rows of the groups that are told: all, by kind, by speed, by distance."""
+    """Yield name and rows of the groups: all, by kind, by speed, by distance."""
     yield "all", np.ones(len(columns["row"]), dtype=bool)
     for kind in KINDS.values():
         yield kind, columns["kind"] == kind

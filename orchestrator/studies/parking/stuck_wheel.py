@@ -36,7 +36,7 @@ REAL = {
     "steering.lag": 0.15,
     "steering.backlash": math.radians(5.0),
 }
-"""A real actuator: a fifth slower than the controller believes, late, lazy, with play."""
+"""A real actuator: a fifth slower than in the controller's model, with dead time, lag and play."""
 OFF = LimitParams().steering_tracking_error
 
 
@@ -51,7 +51,7 @@ class StuckDrive(NamedTuple):
     seen: float
     """From when on it can be seen [s]; NaN: nothing was asked of it any more."""
     found: float
-    """When the system says so [s]; NaN: it did not."""
+    """When the system reports it [s]; NaN: it did not."""
     touched: bool
     """Whether the car touched something."""
     took: float

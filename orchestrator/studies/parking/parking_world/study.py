@@ -30,7 +30,7 @@ from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
-from orchestrator.studies.parking.world.feasibility import HEARD
+from orchestrator.studies.parking.world.feasibility import DETECTED_HEIGHT
 from orchestrator.studies.parking.world.scene import WITH_KERB
 from orchestrator.studies.sweep.fields import Field, find_field
 from orchestrator.studies.sweep.study.design import Design
@@ -136,7 +136,7 @@ def shares_of(table: Table) -> list[str]:
 def kerb_share(table: Table, parked: Array) -> str:
     """Return how many of those parked beside a kerb that sensors detect satisfy GB/T 41630 against it, too."""
     kerb = (table.column("kind") == 0) & (table.column("behind") == WITH_KERB)
-    beside = parked & kerb & (table.column("kerb_height") >= HEARD)
+    beside = parked & kerb & (table.column("kerb_height") >= DETECTED_HEIGHT)
     nearest, farthest = table.column("final.kerb_nearest"), table.column("final.kerb_farthest")
     near = beside & (nearest >= KERB_NEAREST) & (farthest <= KERB_FARTHEST)
     return f"parked beside a detectable kerb, 5 to 35 cm from it: {int(near.sum())} of {int(beside.sum())}"

@@ -21,7 +21,7 @@ from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.system_signals import PARKING_TIME
 from orchestrator.studies.parking.world.factors import NOBODY
-from orchestrator.studies.parking.world.feasibility import COLUMNS, HEARD, feasibility_columns
+from orchestrator.studies.parking.world.feasibility import COLUMNS, DETECTED_HEIGHT, feasibility_columns
 from orchestrator.studies.parking.world.scene import THINGS, WHEEL
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter, Objective
@@ -59,8 +59,8 @@ ENDS = {
     PARKED: "parked within GB/T 41630, nothing touched",
     FAILED: "gave up, nothing touched",
     DRIVER: "touched something while the driver drives",
-    WALKED_INTO: "somebody, or a neighbour, moved into the car: it would have touched it standing, too",
-    LOW_KERB: "a tyre against a kerb that is too low to be heard; nothing of the body touches it",
+    WALKED_INTO: "a pedestrian, or a neighbour, moved into the car: it would have touched it standing, too",
+    LOW_KERB: "a tyre against a kerb that is too low to be detected; nothing of the body touches it",
 }
 """How a run in the world ends, the worst first."""
 
@@ -97,7 +97,7 @@ def end_of(row: Mapping[str, Any], touched: InitialContact | None) -> str:
     """Return how a run ended, one of ``ENDS``."""
     if touched is not None:
         driven = row["touched.state"] in DRIVES and not row["touched.takeover"]
-        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
+        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < DETECTED_HEIGHT
         return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
     if row["outcome"] == "parked" or row["reason"].startswith(BEYOND):
         return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
@@ -107,8 +107,8 @@ def end_of(row: Mapping[str, Any], touched: InitialContact | None) -> str:
 def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
     """Return whether a car is within GB/T 41630 among neighbours of whom one has moved away, as they stand at the end.
 
-    One who leaves a parallel row makes its slot longer by his way; one who stands out of a perpendicular row moves
-    its line by half of that.
+    One that leaves a parallel row makes its slot longer by its distance; one that stands out of a perpendicular row
+    moves its line by half of that.
     """
     if row.get("mover", 0) < NOBODY:
         return False
@@ -137,7 +137,7 @@ def _limits_of(kind: int) -> tuple[float, ...]:
 
 
 def _neighbour_travel(row: Mapping[str, Any]) -> float:
-    """Return how far [m] a neighbour who moves could have come by the end of the run."""
+    """Return how far [m] a moving neighbour could have come by the end of the run."""
     return float(max(0.0, row["duration"] - row["mover_at"]) * row["mover_speed"])
 
 
@@ -154,7 +154,7 @@ def first_contact(row: Mapping[str, Any]) -> InitialContact:
 
 
 def is_driven_into(row: Mapping[str, Any], touched: InitialContact | None) -> bool:
-    """Return whether somebody who moves has touched a car that stands: it could have done no more."""
+    """Return whether a moving obstacle has touched a car at standstill: it could have done no more."""
     if touched is None or touched.name not in MOVABLE_OBSTACLES:
         return False
     return abs(row["touched.speed"]) <= STANDSTILL_SPEED and _is_moving(row, touched.name)

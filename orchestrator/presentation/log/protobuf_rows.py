@@ -47,7 +47,7 @@ class Encoder:
     def __init__(self, variables: list[Variable], columns: Sequence[int] | None = None, room: int = 0) -> None:
         self._kinds = [_kind(variable) for variable in variables]
         self._offsets: list[tuple[int, int]] = []
-        template = self._message(tree([variable.name for variable in variables]), 0)
+        template = self._message(tree(tuple(variable.name for variable in variables)), 0)
         self._template: NDArray[np.uint8] = np.frombuffer(bytes(room) + template, dtype=np.uint8)[None, :]
         self._room = room
         self.size = len(template)
@@ -116,10 +116,10 @@ class Encoder:
 
     def _submessage(self, number: int, fields: dict[str, Any], start: int) -> bytes:
         noted = len(self._offsets)
-        size = len(self._message(fields, 0))
-        del self._offsets[noted:]
-        head = _varint(number << 3 | LENGTH) + _varint(size)
-        return head + self._message(fields, start + len(head))
+        body = self._message(fields, start)
+        head = _varint(number << 3 | LENGTH) + _varint(len(body))
+        self._offsets[noted:] = [(place, offset + len(head)) for place, offset in self._offsets[noted:]]
+        return head + body
 
     def _scalar(self, place: int, start: int) -> bytes:
         self._offsets.append((place, start))

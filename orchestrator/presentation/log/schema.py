@@ -8,6 +8,7 @@ mode as an enum. Field numbers follow the order of the variables.
 import re
 from collections.abc import Iterator
 from enum import IntEnum
+from functools import lru_cache
 from typing import Any
 
 from google.protobuf.descriptor_pb2 import (
@@ -31,7 +32,8 @@ PARAMETERS = "parameters"
 """End of the topic of an instance's parameters."""
 
 
-def tree(names: list[str]) -> Tree:
+@lru_cache(maxsize=64)
+def tree(names: tuple[str, ...]) -> Tree:
     """Return the nested structure that ``names`` spell, with the place of each name at its leaf.
 
     Names that spell none - ``der(x)``, ``a`` beside ``a.b``, ``x[2]`` without ``x[1]`` - become fields of their own.
@@ -61,7 +63,7 @@ def channel_places(names: list[str]) -> dict[str, list[int]]:
     """
     channels: dict[str, list[int]] = {}
     others: list[int] = []
-    for first, content in tree(names).items():
+    for first, content in tree(tuple(names)).items():
         places = sorted(_leaves(content))
         if isinstance(content, dict) and len(places) >= MIN_STRUCTURE_SIZE and first != PARAMETERS:
             channels[first] = places
@@ -144,7 +146,9 @@ def file_descriptor(message: str, variables: list[Variable], notes: list[str]) -
     for name, enum in sorted(states.items()):
         file.message_type.append(_enum_holder(name, enum))
     root = file.message_type.add(name=message)
-    _add_fields(file, root, [4, len(file.message_type) - 1], tree([item.name for item in variables]), variables, notes)
+    _add_fields(
+        file, root, [4, len(file.message_type) - 1], tree(tuple(item.name for item in variables)), variables, notes
+    )
     return file
 
 

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.vocabulary.findings import findings
+
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "docs" / "extend.md", ROOT / "docs" / "extend-tools.md"]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
@@ -131,6 +133,23 @@ def test_what_adds_something_does_so_together(copy: Path) -> None:
         as_said(comment, *answer)
 
 
+def test_the_code_of_the_recipes_passes_lint(copy: Path) -> None:
+    """What `make lint` checks: ruff, and the vocabulary of the files that a recipe changes."""
+    shutil.copy(ROOT / "pyproject.toml", copy)
+    changed = sorted({file for recipe in recipes() for _, file, _ in recipe.edits})
+    before = len(list(findings(ROOT, [file for file in changed if (ROOT / file).is_file()])))
+    for recipe in recipes():
+        for language, file, text in recipe.edits:
+            edit(copy, language, copy / file, text)
+    python = [file for file in changed if file.endswith(".py")]
+    for words in (["check"], ["format", "--check"]):
+        call = [sys.executable, "-m", "ruff", *words, "--no-cache", *python]
+        done = subprocess.run(call, cwd=copy, capture_output=True, text=True, timeout=HANGS)
+        assert done.returncode == 0, done.stdout + done.stderr
+    found = list(findings(copy, changed))
+    assert len(found) <= before, found
+
+
 @pytest.mark.release
 def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
     for folder in ("tests", "apa_cosim", "benchmarks"):
@@ -143,6 +162,8 @@ def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
             if command.startswith("python"):  # writes files that are checked in
                 run_line(copy, command.partition("#")[0].split())
     code, output = run(copy, ["-n", "0", "-q", "-p", "no:cacheprovider", *OWN_TESTS], "pytest")
+    assert code == 0, output
+    code, output = run(copy, ["controller_fmu", "vehicle_fmu", "orchestrator"], "mypy")
     assert code == 0, output
 
 
@@ -200,9 +221,11 @@ def test_the_newcomers_count_is_of_the_recipes() -> None:
         counted[recipe.title] = (len(added), len({file for file, _ in diffs}))
     assert counted["Add a controller"] == (2, 1)
     assert counted["Add a sensor"] == (11, 2)
+    assert counted["Add a slot type"] == (4, 1)
     assert [counted[f"Add {thing}"][0] for thing in ("an export", "a command", "a paper")] == [1, 1, 0]
     table = PAGES[0].read_text(encoding="utf-8").split("## ")[0]
     assert "2 lines in 1 file: an import and a row" in table
+    assert "| add a slot type | 4 lines in 1 file |" in table
     assert "11 lines in 2 files, six of them the record" in table
 
 
@@ -219,6 +242,7 @@ def test_every_recipe_is_tried() -> None:
         "planner",
         "FMI variable",
         "plot panel",
+        "slot type",
     )
     titles = " ".join(recipe.title for recipe in recipes())
     assert [word for word in asked if word not in titles] == []

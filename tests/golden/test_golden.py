@@ -61,12 +61,12 @@ def test_the_record_is_of_the_shipped_scenarios(update: bool) -> None:
     if update:
         record = {name: driven(name) for name in scenario_names()}
         FILE.write_text(yaml.safe_dump(record, default_flow_style=None, sort_keys=False, width=120), encoding="utf-8")
-    assert set(kept()) == set(scenario_names())
+    assert set(kept()) == set(scenario_names()), "scenarios were added or removed: pytest tests/golden --update"
 
 
 def test_the_record_has_the_outcomes_that_the_scenarios_expect() -> None:
     record = kept()
-    expected = {name: load_scenario(name, []).expected_outcome for name in scenario_names()}
+    expected = {name: load_scenario(name, []).expected_outcome for name in scenario_names() if name in record}
     assert {name: record[name]["outcome"] for name in expected} == expected
 
 

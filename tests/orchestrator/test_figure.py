@@ -91,6 +91,16 @@ def test_no_legend_covers_a_title() -> None:
     assert not any(title.overlaps(legend) for title in titles for legend in legends)
 
 
+def test_a_signal_that_hardly_changes_has_the_least_span_of_its_panel() -> None:
+    scenario = load_scenario(DEMO, ["stop_time=1"])
+    ran = run_scenario(scenario)
+    panel = Panel("brake", "Brake", "1", 0.5, (PanelCurve("vehicle.pose.heading"),), column=1)
+    seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
+    axes = next(item for item in overview(seen, (panel,)).axes if item.get_title("left") == "(a) brake")
+    low, high = axes.get_ylim()
+    assert high - low == pytest.approx(0.5)
+
+
 def test_a_process_beside_draws_the_same() -> None:
     scenario = load_scenario(DEMO, ["stop_time=1"])
     ran = run_scenario(scenario)

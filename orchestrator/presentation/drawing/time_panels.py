@@ -98,8 +98,11 @@ def _curves(axis: Any, panel: Panel, seen: Overview, colours: list[str], label_c
         values = (seen.signal(curve.signal) - _origin(seen, curve.signal, from_start)) / factor
         label, colour = named + re.split(r"[._]", curve.signal)[-1], colours[number % len(colours)]
         axis.plot(seen.t, values, color=colour, linewidth=1.5 if colour == BLUE else 1.2, label=label, zorder=2.1)
-    text = f"way from start [{unit}]" if from_start else panel.title.lower() + ("" if unit == "1" else f" [{unit}]")
-    axis.set_ylabel(text, **({"color": label_colour} if label_colour else {}))
+    low, high = axis.get_ylim()
+    missing = max(0.0, panel.least_span / factor - (high - low))
+    axis.set_ylim(low - 0.5 * missing, high + 0.5 * missing)
+    name = "distance from start" if from_start else panel.title.lower()
+    axis.set_ylabel(name + ("" if unit == "1" else f" [{unit}]"), **({"color": label_colour} if label_colour else {}))
     if len(shown) > 1:
         axis.legend(ncols=min(len(driven) + 1, 3), **LEGEND_STYLE)
 

@@ -59,7 +59,7 @@ from modelkit.vocabulary import Pose
 YIELD_TIME = 3.0
 """The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
 MAX_MONITORED_RANGE = 1.5
-"""Echoes farther [m] than this are left to later: twice the stopping distance from top speed with a slow brake."""
+"""Echoes farther [m] than this are not monitored: twice the stopping distance from top speed with a slow brake."""
 MAX_DISPLACEMENT = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""

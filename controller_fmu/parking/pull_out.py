@@ -23,13 +23,13 @@ from modelkit.vocabulary import Pose
 MAX_STAND_OUT = 0.25
 """Neighbours stand out of the row by up to this [m] more than the vehicle: two standard deviations of a row."""
 CLEAR_AHEAD = 4.0
-"""Free distance [m] ahead with which the vehicle is out of the slot, as for `apa`."""
+"""Free distance [m] ahead with which the vehicle is out of the slot."""
 ROAD_CLEARANCE = 0.3
 """Distance [m] of the vehicle on the road from the row."""
 
 
 class FreeBox(NamedTuple):
-    """What is free around a standing vehicle, in its frame [m]; ``NO_ECHO`` where nothing is measured."""
+    """Nearest obstacles in the vehicle's frame [m]: x ahead and behind, y left and right; beyond the range if none."""
 
     front: float
     rear: float
@@ -38,7 +38,7 @@ class FreeBox(NamedTuple):
 
 
 def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
-    """Return the nearest of what the sensors measure that look along or across the vehicle.
+    """Return the nearest obstacles that the sensors measure which look along or across the vehicle; readings in m.
 
     The others look sideways: their echoes come from that side of the cone which is nearer to a neighbour.
     """
@@ -67,7 +67,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
 
 
 def is_clear_ahead(readings: tuple[float, ...]) -> bool:
-    """Return whether all sensors of the front bumper measure so far that the driver can go on."""
+    """Return whether all sensors of the front bumper measure far enough for the driver to go on; readings in m."""
     nearest = CLEAR_AHEAD
     for number in range(BUMPER_SENSORS // 2):
         nearest = min(nearest, readings[number])

@@ -88,7 +88,7 @@ class Perception(NamedTuple):
 
 
 class ParkingMemory(NamedTuple):
-    """The whole."""
+    """State of the parking system between two samples."""
 
     state: int = ParkingState.STANDBY
     strategy: int = Strategy.SLOT

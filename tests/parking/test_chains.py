@@ -14,7 +14,14 @@ from controller_fmu.parking.map.chain_update import (
     is_explained,
     same_side,
 )
-from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
+from controller_fmu.parking.map.echo_chain import (
+    EchoChain,
+    append_echo,
+    begin_chain,
+    continues,
+    is_passed,
+    without_echoes_before,
+)
 from controller_fmu.parking.map.facing_surface import facing_segment
 from controller_fmu.parking.map.landmark import (
     MAX_LANDMARKS,
@@ -153,7 +160,7 @@ def test_a_long_chain_keeps_its_ends() -> None:
     chain = chain_past(0.0, 12.0, 0.0)
     assert chain.echoes[0].x == pytest.approx(-0.5)
     assert chain.echoes[chain.used - 1].x > 12.0
-    rest = from_echo(chain, 10)
+    rest = without_echoes_before(chain, 10)
     assert rest.echoes[0] == chain.echoes[10]
 
 

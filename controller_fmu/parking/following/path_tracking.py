@@ -1,4 +1,4 @@
-"""Where the vehicle is on its path, the steering that leads back to it, and the speed for what lies ahead.
+"""Path tracking: progress along the path, steering back to it, and the speed profile before a stop.
 
 With e the lateral error (left positive) and h the heading error against the path of curvature k, the law
 
@@ -78,7 +78,7 @@ def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: Fo
 
 
 def track_path(progress: PathProgress, pose: Pose, speed: float, context: FollowingContext) -> PathProgress:
-    """Return the progress of a vehicle at ``pose``, with the steering that leads back to the path."""
+    """Return the progress of a vehicle at ``pose`` and ``speed`` [m/s], with the steering back to the path."""
     if progress.remaining <= 0.0 and transition_after(progress.path, progress.segment, context).transition > 0.0:
         progress = _roll_to_next(progress)
     segment = progress.path.segments[progress.segment]

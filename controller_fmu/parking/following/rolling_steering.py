@@ -44,7 +44,7 @@ class CurvatureJoint(NamedTuple):
     """The end of a segment."""
 
     transition: float = 0.0
-    """Way [m] over which the curvature changes there; 0: the car has to stand."""
+    """Length [m] over which the curvature changes there; 0: the car has to stand."""
     jump: float = 0.0
     """Of the curvature [1/m]."""
 
@@ -77,7 +77,7 @@ class UpcomingStop(NamedTuple):
     """What the segments ahead ask for."""
 
     left: float = 0.0
-    """Way to the next standstill [m]."""
+    """Distance to the next standstill [m]."""
     speed: float = 0.0
     """Largest speed [m/s] here, that the transitions here and ahead allow."""
     standstill: StandstillSteering = StandstillSteering()
@@ -167,7 +167,7 @@ def reference_at(path: PlannedPath, segment: int, left: float, context: Followin
 
 
 def steering_rate_at(path: PlannedPath, whole: GearSegment, place: float, context: FollowingContext) -> float:
-    """Return by how much the front steering wheels turn [rad/m] at a place [m] of a stretch: L k' / (1 + (L k)^2)."""
+    """Return the turning of the front wheels [rad/m] at a place [m] of a gear segment: L k' / (1 + (L k)^2)."""
     at = 0.0
     curvature = path.segments[whole.first].curvature
     slope = 0.0

@@ -1,4 +1,4 @@
-"""From chains of echoes to landmarks: fit, split where two bodies are detected as one, and keep what was known before.
+"""From chains of echoes to landmarks: fit a segment, split it where two bodies seem one, merge it with the map.
 
 One convex body leaves ranges that fall, stay and rise. Where they rise and fall again in between, two bodies stand side
 by side; the fit of two segments must then explain the echoes better than that of one (ratio of likelihoods).
@@ -15,9 +15,9 @@ from controller_fmu.parking.map.echo_chain import (
     append_echo,
     begin_chain,
     continues,
-    from_echo,
     is_passed,
     is_turned_back,
+    without_echoes_before,
 )
 from controller_fmu.parking.map.landmark import (
     MAX_LANDMARKS,
@@ -157,14 +157,14 @@ def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
 
 
 def finish_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
-    """Return landmarks and chain with the fit of a chain that has ended, if it has echoes enough."""
+    """Return landmarks and chain after the last fit of a chain that ends, if it has ``MIN_ECHOES``."""
     if update.chain.used >= MIN_ECHOES:
         update = fit_chain(update, reading, ends_at_edge, params)
     return update
 
 
 def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
-    """Return landmarks and chain after a fit; a chain of two bodies is split, and its first part done."""
+    """Return landmarks and chain after a fit; of a chain of two bodies the first is mapped, the second goes on."""
     chain = update.chain
     last = chain.used - 1
     begins = ChainEnd(chain.begins_at_edge, OPEN_INSET)
@@ -182,7 +182,7 @@ def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, par
         ):
             known = _with_edges(first, chain.begins_at_edge, True)
             update = _put(update, known, at, params)
-            update = update._replace(chain=from_echo(chain, at))
+            update = update._replace(chain=without_echoes_before(chain, at))
             known = _with_edges(second, True, ends_at_edge)
             return _put(update, known, update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
@@ -194,7 +194,7 @@ def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, par
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:
-    """Return the first echo of a chain's body; those before are of the body that hid it: ranges rise, then fall."""
+    """Return the index of a chain's first echo (``variance`` [m2]) after those of a nearer body: ranges rise, fall."""
     top = 0
     for number in range(1, MIN_PART):
         if number + MIN_ECHOES < chain.used and chain.echoes[number].range > chain.echoes[top].range:
@@ -228,8 +228,8 @@ def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, varian
 
 
 def half_gap(echo: ChainEcho, segment: Landmark) -> float:
-    """Return half of a gap [m] by the echo at its middle, off both corners: range2 = distance2 + (gap / 2)2."""
-    distance = predict_residual(segment, echo.x, echo.y)
+    """Return half of the gap [m] between two bodies by the echo at its middle: range2 = distance2 + (gap / 2)2."""
+    distance = distance_to_segment(segment, echo.x, echo.y)
     return math.sqrt(max(echo.range * echo.range - distance * distance, 0.0))
 
 
@@ -268,9 +268,9 @@ def _as_observed(fit: SegmentFit, start: ChainEcho, end: ChainEcho, starts: Chai
 
 
 def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: float, step: float) -> EndGuess:
-    """Return where an edge is on a line by its outermost echo: on the cone's boundary, ``inwards`` (1, -1).
+    """Return where a body that lies ``inwards`` (1, -1) along ``line`` ends, by its outermost echo.
 
-    It came into the cone at any place of the ``step`` [m] before that echo (evenly distributed).
+    The end came into the cone at any place of the ``step`` [m] before that echo (evenly distributed).
     """
     along = inwards * along_of(line, echo.x, echo.y)
     for side in (-1.0, 1.0):
@@ -319,7 +319,7 @@ def initial_line(chain: EchoChain, first: int, last: int, sensor: SensorPose) ->
 
 
 def parting_echo(chain: EchoChain, segment: Landmark) -> int:
-    """Return the echo before which two bodies part: the top of the largest hump over a fitted segment; 0: none."""
+    """Return the index of the echo that divides two bodies: the top of the largest hump over ``segment``; 0: none."""
     best = 0.0
     at = 0
     for number in range(MAX_ECHOES):
@@ -327,7 +327,7 @@ def parting_echo(chain: EchoChain, segment: Landmark) -> int:
             total = 0.0
             for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
                 echo = chain.echoes[number + near]
-                total += echo.range - predict_residual(segment, echo.x, echo.y)
+                total += echo.range - distance_to_segment(segment, echo.x, echo.y)
             if total > best:
                 best = total
                 at = number
@@ -340,7 +340,7 @@ def _hump_top(chain: EchoChain, segment: Landmark, middle: int) -> int:
     most = 0.0
     for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
         echo = chain.echoes[middle + near]
-        behind = echo.range - predict_residual(segment, echo.x, echo.y)
+        behind = echo.range - distance_to_segment(segment, echo.x, echo.y)
         if behind > most:
             most = behind
             top = middle + near
@@ -364,12 +364,12 @@ def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, La
 
 
 def chi_square_of(segment: Landmark, echo: ChainEcho, variance: float) -> float:
-    """Return the squared residual of an echo over its ``variance`` [m2], so limited that no outlier decides."""
-    residual = echo.range - predict_residual(segment, echo.x, echo.y)
+    """Return the squared residual of an echo over its ``variance`` [m2], limited so that no outlier decides."""
+    residual = echo.range - distance_to_segment(segment, echo.x, echo.y)
     return min(residual * residual / variance, ROBUST_SIGMA * ROBUST_SIGMA)
 
 
-def predict_residual(segment: Landmark, x: float, y: float) -> float:
+def distance_to_segment(segment: Landmark, x: float, y: float) -> float:
     """Return the distance [m] of a sensor at (x, y) to a segment, whatever its field of view."""
     u = along_of(segment, x, y)
     v = offset_of(segment, x, y)
@@ -419,7 +419,7 @@ def chain_path(chain: EchoChain, echoes: int) -> float:
 
 
 def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params: MappingParams) -> int:
-    """Return which segment of the map, other than number ``index``, is the same side as a new one; -1: none."""
+    """Return the index of the segment of the map that is the same side as ``new``, not ``index``; -1: none."""
     if new.type != LandmarkType.SEGMENT:
         return -1
     for number in range(MAX_LANDMARKS):
@@ -442,7 +442,7 @@ def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params
 
 
 def put_facing(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingParams) -> tuple[Landmark, ...]:
-    """Return the landmarks with a surface that a bumper approaches: the map's own is moved to it, else it is new."""
+    """Return the landmarks with a surface that a bumper approaches: the same side of the map is moved, else added."""
     index = same_side(landmarks, new, -1, params)
     if index < 0:
         return replace_landmark(landmarks, free_index(landmarks), new)
@@ -458,7 +458,7 @@ def put_facing(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingPa
 
 
 def is_better(before: Landmark, new: Landmark) -> bool:
-    """Return whether the map knows a side better than a new look at it does."""
+    """Return whether ``before``, a side in the map, is known better than ``new``: more known ends, more updates."""
     known_before = (1 if before.start_known else 0) + (1 if before.end_known else 0)
     known_new = (1 if new.start_known else 0) + (1 if new.end_known else 0)
     if known_before != known_new:

@@ -56,8 +56,8 @@ class EchoChain(NamedTuple):
 def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: float) -> bool:
     """Return whether an echo at ``measured`` [m], of ``variance`` [m2], can come from the body of the chain.
 
-    Also after several echoes: those of the cone's boundary on a face run too steeply, by less than the noise at each
-    step of a slow pass.
+    The last ``SLOPE_ECHOES`` echoes are compared: on a slow pass the range at the cone's boundary changes too much per
+    metre, but from one echo to the next by less than the noise.
     """
     first = chain.echoes[0]
     if sensor.axis_x * first.axis_x + sensor.axis_y * first.axis_y <= MAX_TURN_COS:
@@ -86,7 +86,7 @@ def is_turned_back(chain: EchoChain, sensor: SensorPose) -> bool:
 
 
 def is_passed(chain: EchoChain, sensor: SensorPose) -> bool:
-    """Return whether a sensor without an echo has passed the chain's body."""
+    """Return whether a sensor that measures no echo any more has passed the chain's body."""
     last = chain.echoes[max(chain.used - 1, 0)]
     dx = sensor.x - last.x
     dy = sensor.y - last.y
@@ -94,7 +94,7 @@ def is_passed(chain: EchoChain, sensor: SensorPose) -> bool:
 
 
 def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> EchoChain:
-    """Return a chain of one echo."""
+    """Return a chain of one echo at ``measured`` [m]; ``begins_at_edge``: before it was a farther echo, or none."""
     first = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     return EchoChain(
         used=1,
@@ -104,7 +104,7 @@ def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> Ec
 
 
 def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoChain:
-    """Return the chain with one more echo, if the sensor has moved."""
+    """Return the chain with one more echo at ``measured`` [m], if the sensor has moved."""
     last = chain.echoes[max(chain.used - 1, 0)]
     dx = sensor.x - last.x
     dy = sensor.y - last.y
@@ -119,7 +119,7 @@ def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoCh
     return chain._replace(used=at + 1, echoes=echoes)
 
 
-def from_echo(chain: EchoChain, first: int) -> EchoChain:
+def without_echoes_before(chain: EchoChain, first: int) -> EchoChain:
     """Return the chain without the echoes before ``first``: they were of another body, beyond an edge."""
     echoes = tuple(chain.echoes[min(number + first, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
     return chain._replace(used=chain.used - first, echoes=echoes, begins_at_edge=True, landmark=-1, fitted=0)

@@ -13,22 +13,22 @@ from controller_fmu.parking.measurement.sensor import SensorPose
 BUMPER_SENSORS = 8
 """Numbers 0 to 3 in front, 4 to 7 behind."""
 FACING_ECHOES = 8
-"""Echoes of a track that at rest is believed: the rate is then known to 0.2 m/s."""
+"""Echoes of a track after which its object counts as at rest: its closing rate is then known to 0.2 m/s."""
 MAX_TILT_SLOPE = 0.36
 """Tangent of the largest tilt of a surface against the bumper: 20 deg."""
 MAX_FACING_RANGE = 1.5
-"""Farther echoes [m] are left to later."""
+"""Farther echoes [m] are not used yet."""
 LATERAL_SIGMA = 0.15
 """Standard deviation [m] of where such a segment ends."""
 
 
 def is_pair(number: int) -> bool:
-    """Return whether the sensor ``number`` and the next are beside each other on one bumper."""
+    """Return whether sensor ``number`` (0 to 7) and the next are beside each other on one bumper."""
     return number != 3 and number != BUMPER_SENSORS - 1
 
 
 def facing_segment(a: SensorPose, a_range: float, b: SensorPose, b_range: float, variance: float) -> Landmark:
-    """Return the segment between the feet on the axes of two sensors; type NONE if the ranges do not agree."""
+    """Return the segment between the feet [m] on two sensors' axes; ``variance`` [m2]; type NONE if they disagree."""
     base = math.sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y))
     if abs(a_range - b_range) > MAX_TILT_SLOPE * base + 3.0 * math.sqrt(2.0 * variance):
         return Landmark()

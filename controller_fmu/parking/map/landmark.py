@@ -70,12 +70,12 @@ def length_of(landmark: Landmark) -> float:
 
 
 def along_of(landmark: Landmark, x: float, y: float) -> float:
-    """Return where [m] along a landmark's line the point (x, y) projects to."""
+    """Return where [m] along a landmark's line the point (x, y) [m] of the odometry frame projects to."""
     return (x - landmark.x) * math.cos(landmark.heading) + (y - landmark.y) * math.sin(landmark.heading)
 
 
 def offset_of(landmark: Landmark, x: float, y: float) -> float:
-    """Return how far [m] to the left of a landmark's line the point (x, y) lies."""
+    """Return how far [m] to the left of a landmark's line the point (x, y) [m] of the odometry frame lies."""
     return (y - landmark.y) * math.cos(landmark.heading) - (x - landmark.x) * math.sin(landmark.heading)
 
 
@@ -94,7 +94,7 @@ def replace_landmark(landmarks: tuple[Landmark, ...], index: int, landmark: Land
 
 
 def free_index(landmarks: tuple[Landmark, ...]) -> int:
-    """Return a free place of the map; if there is none, that of the landmark with the fewest confirmations."""
+    """Return the index of a free place of the map, else that of the landmark with the fewest confirmations."""
     least = 0
     for number in range(MAX_LANDMARKS):
         if landmarks[number].type == LandmarkType.NONE:

@@ -178,7 +178,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
             if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
-                is_missed = is_missed or (not is_echo and stays(landmark))
+                is_missed = is_missed or (not is_echo and is_permanent(landmark))
                 if is_credible:
                     after = contradict(landmark, predict_range(sensor, landmark), params)
             local_map = local_map._replace(
@@ -188,8 +188,8 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
     return local_map._replace(missed=missed)
 
 
-def stays(landmark: Landmark) -> bool:
-    """Return whether a landmark is no pedestrian, who may leave: long, and passed, not what came before a bumper."""
+def is_permanent(landmark: Landmark) -> bool:
+    """Return whether a landmark does not leave, as a pedestrian may: a long segment, measured from a flank."""
     is_long = landmark.type == LandmarkType.SEGMENT and length_of(landmark) > BODY_BETWEEN
     return is_long and landmark.confirmations > FACING_ECHOES
 

@@ -103,7 +103,7 @@ def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: Ma
         point = boundary_point(reading.sensor, reading.range, turn)
         over = is_over(run, reading.status, point, reading.range, reading.variance)
         if over:
-            ends = transition(run.range, reading.range)
+            ends = side_ending(run.range, reading.range)
             side = side_of(run, reading.sensor, turn, ends, reading.variance)
             if side.type != LandmarkType.NONE:
                 update = update._replace(landmarks=put_side(update.landmarks, side, params))
@@ -156,7 +156,7 @@ def next_run(run: BoundaryRun, status: int, point: Point, measured: float, over:
     if status != ReadingStatus.ECHO:
         return BoundaryRun(range=NO_HIT) if over or run.n == 0 else run._replace(lost=run.lost + 1)
     if over or run.n == 0:
-        return with_point(BoundaryRun(begins=transition(measured, run.range)), point, measured)
+        return with_point(BoundaryRun(begins=side_ending(measured, run.range)), point, measured)
     dx = point.x - run.last.x
     dy = point.y - run.last.y
     if run.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
@@ -183,8 +183,8 @@ def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
     )
 
 
-def transition(inner: float, outer: float) -> int:
-    """Return how a side goes on whose outermost echo is at ``inner`` [m], if the next beyond is at ``outer`` [m]."""
+def side_ending(inner: float, outer: float) -> int:
+    """Return the ``SideEnding`` of a side: its outermost echo is at ``inner`` [m], the next beyond at ``outer`` [m]."""
     if outer > inner + EDGE_JUMP:
         return SideEnding.EDGE if inner < MAX_EDGE_RANGE else SideEnding.HIDDEN
     return SideEnding.HIDDEN if outer < inner - EDGE_JUMP else SideEnding.SMOOTH

@@ -75,8 +75,9 @@ def is_contradicted(
 ) -> bool:
     """Return whether a landmark had to return an echo, but the first one is beyond ``free_range`` [m].
 
-    Only where the predicted echo lies well inside the cone, beyond the blind zone and outside the gate; of a segment
-    only the side, since the corners may lie outside a narrower cone, or all of it if it is short.
+    Only where the predicted echo lies well inside the cone, beyond the blind zone (``min_range`` [m]) and outside the
+    gate (``variance`` [m2] of an echo); of a segment only the side, as corners may lie outside a narrower cone, or all
+    of it if it is short.
     """
     predicted = predict_range(sensor, landmark)
     if predicted.origin == EchoOrigin.OUT_OF_VIEW or predicted.origin == EchoOrigin.CONE_EDGE:

@@ -12,7 +12,7 @@ SECONDS_PER_NANOSECOND = 1e-9
 
 
 class MeasurementCycle(NamedTuple):
-    """The last readings [m], since when the next are due [ns] (0: not due), and whether they are new."""
+    """The last readings [m], for how long the next have been due [ns] (0: not due), and whether they are new."""
 
     readings: tuple[float, ...] = (0.0,) * MAX_SENSORS
     due_ns: int = 0

@@ -1,4 +1,4 @@
-"""The range that a sensor should measure to a point or a segment, and how it changes with what is measured.
+"""The predicted range of a sensor to a point, a segment or polygons, and which part of them returns the echo.
 
 The echo of a segment comes from its nearest point inside the cone: the foot of the perpendicular (``INTERIOR``), an end
 of the segment (``START``, ``END``), or where the boundary of the cone cuts it (``CONE_EDGE``). The last says where the
@@ -42,7 +42,7 @@ class PredictedRange(NamedTuple):
 def direction_of(predicted: PredictedRange, sensor: SensorPose) -> Point:
     """Return the unit vector from a sensor to where its echo is predicted to come from; at the sensor itself its axis.
 
-    However near that is: a shorter vector would put an echo that is farther than predicted at the sensor.
+    It has length 1 at any distance: an echo farther than predicted is placed along it.
     """
     if predicted.distance <= 0.0:
         return Point(sensor.axis_x, sensor.axis_y)

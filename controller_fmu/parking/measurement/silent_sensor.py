@@ -30,7 +30,7 @@ def count_missed_echo(before: MissedEchoes, sensor: int, status: int, is_expecte
 
 
 def is_credible_miss(missed: MissedEchoes, sensor: int) -> bool:
-    """Return whether a missing echo of a sensor (0 to 11) tells more of its surroundings than of the sensor."""
+    """Return whether a missing echo of a sensor (0 to 11) shows free space rather than a silent sensor."""
     return missed.counts[min(max(sensor, 0), MAX_SENSORS - 1)] < MISSED_ECHOES // 2
 
 

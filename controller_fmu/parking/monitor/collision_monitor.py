@@ -14,7 +14,7 @@ from controller_fmu.parking.geometry.outline import (
     outline_frame,
     pose_along_arc,
 )
-from controller_fmu.parking.geometry.outline_distance import edge_distance
+from controller_fmu.parking.geometry.outline_distance import squared_edge_distance
 from controller_fmu.parking.map.landmark import (
     MAX_LANDMARKS,
     Landmark,
@@ -132,7 +132,7 @@ def free_by_map(
     params: MonitorParams,
     mapping: MappingParams,
 ) -> float:
-    """Return how far [m] the outline goes before it comes too near to a confirmed landmark; UNLIMITED: farther."""
+    """Return how far [m] the outline goes before it comes too near to a confirmed landmark, else ``NO_LIMIT``."""
     free = NO_LIMIT
     horizon = sweep.horizon
     outline = sweep.outline
@@ -158,7 +158,7 @@ def free_by_echoes(
     unexplained: bool,
     params: MonitorParams,
 ) -> float:
-    """Return how far [m] the outline goes before it comes too near to an echo, as that approaches."""
+    """Return the same [m] for the echoes that are ``unexplained``, or not: those may approach by themselves."""
     free = NO_LIMIT
     horizon = sweep.horizon
     outline = sweep.outline
@@ -200,12 +200,12 @@ def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -
 
 
 def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the outline of a vehicle at ``frame`` to the line a-b, at most ``NO_LIMIT``."""
+    """Return the distance [m] from the outline of a vehicle at ``frame`` to the segment a-b, at most ``NO_LIMIT``."""
     cos = frame.cos
     sin = frame.sin
     x = frame.x + outline.centre_ahead * cos
     y = frame.y + outline.centre_ahead * sin
-    square = edge_distance(
+    square = squared_edge_distance(
         (a.x - x) * cos + (a.y - y) * sin,
         (a.y - y) * cos - (a.x - x) * sin,
         (b.x - x) * cos + (b.y - y) * sin,
@@ -225,14 +225,14 @@ def _is_within(landmark: Landmark, pose: Pose, reach: float) -> bool:
 
 
 def stopping_distance(speed: float, delay: float, deceleration: float) -> float:
-    """Return the distance [m] in which a vehicle at ``speed`` [m/s] >= 0 stops."""
+    """Return the distance [m] in which a vehicle at ``speed`` [m/s] >= 0 stops; delay [s], deceleration [m/s2] > 0."""
     return speed * delay + 0.5 * speed * speed / deceleration
 
 
 def speed_for_distance(distance: float, delay: float, deceleration: float) -> float:
     """Return the largest speed [m/s] from which a vehicle stops within ``distance`` f [m]; 0 for none.
 
-    It is the positive root of v d + v2 / 2 b = f with delay d and deceleration b: v = b (sqrt(d2 + 2 f / b) - d).
+    It is the root v = b (sqrt(d2 + 2 f / b) - d) of v d + v2 / 2 b = f with delay d [s] and deceleration b [m/s2].
     """
     if distance <= 0.0:
         return 0.0

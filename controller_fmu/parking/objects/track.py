@@ -74,7 +74,7 @@ class ObjectTrack(NamedTuple):
 def update_track(
     track: ObjectTrack, is_echo: bool, measured: float, own_approach: float, variance: float, dt: float
 ) -> ObjectTrack:
-    """Return the track after a cycle of ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer."""
+    """Return the track after ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer; ``variance`` in m2."""
     if track.status == TrackStatus.NONE:
         if not is_echo:
             return track

@@ -1,4 +1,4 @@
-"""The words that lead to the target, cheapest first, and whether the car can drive one: how a node is joined to it."""
+"""Analytic expansion: the cheapest Reeds-Shepp word from a node to the target that is free of collision."""
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
@@ -31,7 +31,7 @@ def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int
 
 
 def cheapest_word(work: PlanningWork, words: int) -> int:
-    """Return the word of least cost."""
+    """Return the index of the word of least cost among the first ``words``."""
     best = 0
     least = work.word_cost[0]
     for word in range(1, words):
@@ -43,7 +43,7 @@ def cheapest_word(work: PlanningWork, words: int) -> int:
 
 
 def word_length(work: PlanningWork, word: int, segment: int) -> float:
-    """Return the distance [m] of a word's segment."""
+    """Return the length [m] of a word's segment (0 to 4), reverse negative."""
     if segment == 0:
         return work.word_a[word]
     if segment == 1:

@@ -1,4 +1,4 @@
-"""What room there is where segments of the path kept begin: a car that turns its wheel on the move may use of it.
+"""Clearance beside the path at each segment joint: what steering while rolling may use of it.
 
 On a transition (``curvature_transition.py``) the car is off its direction, and behind it beside its path. So the
 outline is examined as it stands on the transition, not on the path alone.
@@ -45,7 +45,7 @@ EXAMINED_AFTER = 2.0
 
 
 def measure_clearance(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> bool:
-    """Measure the room about the begin of the next segment of the path kept; returns whether there is one more."""
+    """Measure the clearance about the start of the next segment of the path kept; returns whether there is one more."""
     segment = work.counts[PlanCount.MEASURED_SEGMENTS]
     problem = problem._replace(margin=work.values[PlanValue.BEST_PATH_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)

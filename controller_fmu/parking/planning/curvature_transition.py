@@ -1,4 +1,4 @@
-"""A transition: where a path's curvature jumps it changes linearly over a distance, half of it before the joint.
+"""A transition: in place of a jump of the path's curvature a linear change, half of its length before the joint.
 
 The heading behind the transition is the path's, and the car is beside it by dk r^2 / 24. Half way along it the car is
 off its direction by dk r / 8, and its nose swings out by so much times its length.
@@ -23,17 +23,17 @@ class TransitionState(NamedTuple):
 
 
 def transition_length(off: float, jump: float, longest: float) -> float:
-    """Return the length [m] of the transition that takes the car ``off`` [m] beside its path, at most ``longest``."""
+    """Return the length [m], at most ``longest``, of a transition by ``jump`` [1/m] that ends ``off`` [m] aside."""
     return longest if abs(jump) * longest * longest <= 24.0 * off else math.sqrt(24.0 * off / abs(jump))
 
 
 def lateral_offset_after(jump: float, length: float) -> float:
-    """Return how far [m] to the left of its path a car is behind a transition."""
+    """Return how far [m] to the left of its path a car is behind a transition: ``jump`` [1/m] over ``length`` [m]."""
     return jump * length * length / 24.0
 
 
 def transition_state(jump: float, length: float, past: float, is_past: bool) -> TransitionState:
-    """Return where a car is on a transition, ``past`` [m] behind the joint; ``is_past``: on the path behind."""
+    """Return the state ``past`` [m] behind the joint, against the segment behind (``is_past``) or before it."""
     on = past + 0.5 * length
     share = on / length
     path_turned = 1.0 if is_past else 0.0

@@ -1,4 +1,4 @@
-"""The two rasters over the search region: which edges are near a cell, and how far it is from a cell to the target."""
+"""Two grids over the search region: the edges near each cell, and the cost-to-go from each cell to the target."""
 
 import math
 from typing import NamedTuple
@@ -25,7 +25,7 @@ NOT_QUEUED = -2
 
 
 def edge_reach(region: SearchRegion, car: VehicleOutline) -> float:
-    """Return how far [m] from a cell's centre an edge may lie that the car could see from the cell."""
+    """Return how far [m] from a cell's centre an edge can matter to a car whose rear axle is in the cell."""
     radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
     return HALF_DIAGONAL * region.edge_cell + radius + MAX_CLEARANCE
 
@@ -115,7 +115,7 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
         for column in range(first, last + 1):
             x = (column + 0.5) * region.edge_cell - x1
             y = (row + 0.5) * region.edge_cell - y1
-            if point_line(x, y, dx, dy) < reach * reach:
+            if squared_segment_distance(x, y, dx, dy) < reach * reach:
                 cell = row * region.edge_cell_count + column
                 place = work.cell_start[cell]
                 if fill:
@@ -125,8 +125,8 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
                     work.cell_start[cell] = place + 1
 
 
-def point_line(x: float, y: float, dx: float, dy: float) -> float:
-    """Return the squared distance [m2] of a point to the line from the origin by (dx, dy)."""
+def squared_segment_distance(x: float, y: float, dx: float, dy: float) -> float:
+    """Return the squared distance [m2] from (x, y) to the segment from the origin to (dx, dy)."""
     square = dx * dx + dy * dy
     t = (x * dx + y * dy) / square if square > 0.0 else 0.0
     t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
@@ -167,7 +167,7 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
                 _cell(to_x + reach, region.cost_to_go_cell, count) + 1,
             ):
                 x = (column + 0.5) * region.cost_to_go_cell - x1
-                if point_line(x, y, dx, dy) < reach * reach:
+                if squared_segment_distance(x, y, dx, dy) < reach * reach:
                     work.cost_to_go[row * count + column] = -1.0
 
 
@@ -213,7 +213,7 @@ def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
 
 
 def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchRegion) -> float:
-    """Return the distance [m] of a point at (x, y) to the target."""
+    """Return the length [m] of the shortest way of a point from (x, y) to the target around the edges."""
     column = _cell(x - region.x0, region.cost_to_go_cell, region.cost_to_go_count)
     row = _cell(y - region.y0, region.cost_to_go_cell, region.cost_to_go_count)
     distance = work.cost_to_go[row * region.cost_to_go_count + column]
@@ -221,7 +221,7 @@ def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchR
 
 
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
-    """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the search region."""
+    """Copy the polygons' edges into the frame of ``origin``; returns how many lie in or near the search region."""
     count = 0
     for vertex in range(work.counts[PlanCount.VERTEX_COUNT]):
         if work.corner_of[vertex] > 0:

@@ -1,4 +1,4 @@
-"""A path for a request: one search after the other, step by step, as a memo of (scene, request, count of steps).
+"""The planner: searches in turn, step by step; the work arrays cache the result of (scene, request, step count).
 
 What the work arrays hold after ``search_until`` follows from its arguments alone. If they hold something else, of
 another request or of later steps, all is done anew from the first step.
@@ -55,7 +55,7 @@ class PlanningPhase(IntEnum):
 
 
 class PlanningStatus(IntEnum):
-    """What has become of a request."""
+    """State of a request."""
 
     PLANNING = 0
     PLANNED = 1
@@ -117,7 +117,7 @@ def continue_search(work: PlanningWork, request: PlanningRequest, most: int) -> 
 
 
 def search_status(work: PlanningWork) -> int:
-    """Return what has become of the search."""
+    """Return the ``PlanningStatus`` of the search."""
     return work.counts[PlanCount.STATUS]
 
 
@@ -140,7 +140,7 @@ def is_for_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, 
 
 
 def begin(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> None:
-    """Forget all, and store the request."""
+    """Reset the search, and store its scene and request."""
     numbers = _numbers(request)
     for which in range(REQUEST_SIZE):
         work.requested[which] = numbers[which]
@@ -165,7 +165,7 @@ def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Verte
 
 
 def step(work: PlanningWork, request: PlanningRequest) -> None:
-    """Do one bounded segment of work: lay out a scene, plant a tree, expand a node, try a shorter span, see a joint."""
+    """Do one bounded step: set up a scene, begin a search, expand a node, smooth a span, or examine a joint."""
     work.counts[PlanCount.COUNT] = work.counts[PlanCount.COUNT] + 1
     phase = work.counts[PlanCount.PHASE]
     problem = search_problem(work, request)

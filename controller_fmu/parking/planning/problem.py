@@ -64,7 +64,7 @@ class SearchResolution(NamedTuple):
     refinement: float
     """Cells are finer by this factor near the root."""
     heuristic_weight: float
-    """How much the estimated rest counts against the distance driven."""
+    """Factor of the estimated cost to go, against the cost so far."""
     crowding_cost: float
     """Cost [m] for each node that has been expanded in the same region."""
 

@@ -1,6 +1,6 @@
-"""All short lengths from one pose to another on free ground: words of arcs at full lock (L, R) and lines (S).
+"""Reeds-Shepp words: short paths between two poses on free ground, of arcs at full lock (L, R) and lines (S).
 
-A car that may drive both lengths gets from any pose to any other by at most five segments (J. A. Reeds, L. A. Shepp,
+A car with both gears gets from any pose to any other by at most five segments (J. A. Reeds, L. A. Shepp,
 "Optimal paths for a car that goes both forwards and backwards", Pacific J. Math. 145 (1990)); the shortest is among
 48 words. What is best among obstacles, or with a price on each change of direction, need not be among them. So the
 words of three segments are listed in full here: CSC and CCC, each arc driven forward or, the other way round its
@@ -26,7 +26,7 @@ MIN_WORD_LENGTH = 1e-6
 
 
 def word_code(a: int, b: int, c: int, d: int, e: int) -> int:
-    """Return the turns of five segments as one number."""
+    """Return the turns of five segments (``LEFT_TURN``, ``STRAIGHT_LINE``, ``RIGHT_TURN``) as one number."""
     return a + 3 * (b + 3 * (c + 3 * (d + 3 * e)))
 
 
@@ -47,13 +47,14 @@ class WordSymmetry(NamedTuple):
     left: int
     right: int
     time: float
-    """1.0, or -1.0: each segment the other distance."""
+    """1.0, or -1.0: each segment in the other direction of travel."""
 
 
 def list_words(work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, problem: SearchProblem) -> int:
-    """List the words from ``start`` to ``end`` with their costs; returns how many.
+    """List the words from ``start`` to ``end`` with their costs [m] in ``work``; returns how many.
 
-    ``gear`` (1.0, -1.0; 0.0: none) and ``lock`` (-1.0 to 1.0) are those the car arrives with at ``start``.
+    ``gear`` (1.0, -1.0; 0.0: none) and ``lock`` (-1.0 to 1.0) are those with which the car arrives at
+    ``start``: its direction, and its curvature over the largest.
     """
     k = problem.car.max_curvature
     cos = math.cos(start.heading)
@@ -115,7 +116,7 @@ def _three_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetr
 
 
 def _arcs(work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float], arrival: ArrivalState) -> int:
-    """List a word of three segments with its outer arcs driven either distance round."""
+    """List a word of three segments with each outer arc driven forward, or in reverse the other way round."""
     t = wrap_angle(lengths[0])
     u = lengths[1]
     v = wrap_angle(lengths[2])

@@ -1,4 +1,4 @@
-"""The search: a tree of poses from the root, grown where it promises most, joined to the target by a word."""
+"""Hybrid A*: a tree of poses from the root, expanded at the least estimated cost, joined to the target by a word."""
 
 import math
 
@@ -55,7 +55,7 @@ CROWDING_CELL = 1.5
 
 
 def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
-    """Plant the root, and measure how far the car can drive from the target."""
+    """Insert the root into an empty tree, and measure how far the car can drive from the target."""
     clear_tree(work)
     for gear in range(2):
         for turn in range(3):
@@ -68,9 +68,9 @@ def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
 
 
 def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
-    """Take up the node that promises most; returns the status.
+    """Expand the node of least estimated cost; returns ``SEARCH_ACTIVE``, ``PATH_FOUND`` or ``NO_PATH_FOUND``.
 
-    A node's place in the queue is a first guess, made better when its turn comes: then it may have to wait again.
+    The estimate that orders the queue is a quick one; it is refined when a node is popped, which may push it back.
     """
     for _ in range(MAX_EVALUATIONS_PER_STEP):
         node = pop_lowest(work)
@@ -98,7 +98,7 @@ def is_spent(work: PlanningWork, problem: SearchProblem) -> bool:
 
 
 def is_settled(work: PlanningWork) -> bool:
-    """Return whether a distance is found and some more have been looked for."""
+    """Return whether a path is found and the expansions since then have been enough to find a cheaper one."""
     found_at = work.counts[PlanCount.FIRST_FOUND_AT]
     return (
         work.counts[PlanCount.BEST_NODE] != NO_INDEX
@@ -107,7 +107,7 @@ def is_settled(work: PlanningWork) -> bool:
 
 
 def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
-    """Work out what a distance through a node will cost; returns whether it has to wait, put back into the queue."""
+    """Refine the estimated cost of a path through a node; returns whether the node is closed or back in the queue."""
     pose = pose_of(work, node)
     if work.node_state[node] == COST_ESTIMATED:
         words = list_words(work, pose, problem.target, gear_of(work, node), lock_of(work, node, problem), problem)
@@ -136,7 +136,7 @@ def bound_cost(work: PlanningWork) -> float:
 
 
 def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
-    """Join a node to the target if that can be, and let it branch."""
+    """Try to join a node to the target by a word, and add its successors."""
     pose = pose_of(work, node)
     gear = gear_of(work, node)
     lock = lock_of(work, node, problem)
@@ -182,7 +182,7 @@ def region_of(pose: Pose, problem: SearchProblem) -> int:
 
 
 def heuristic(work: PlanningWork, pose: Pose, cost: float, problem: SearchProblem) -> float:
-    """Return what a distance through ``pose`` will cost at the least, as far as can be said quickly."""
+    """Return a quick estimate of the cost [m] of a path through ``pose``, which has cost ``cost`` [m] so far."""
     cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
     turn = abs(wrap_angle(problem.target.heading - pose.heading)) / problem.car.max_curvature
     return cost + problem.stage.resolution.heuristic_weight * (cost_to_go if cost_to_go > turn else turn)
@@ -253,7 +253,7 @@ def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) 
 
 
 def key_of(pose: Pose, distance: float, problem: SearchProblem) -> int:
-    """Return the number of the cell of poses, by the gear that it was reached in."""
+    """Return the number of the cell of ``pose``, by the gear it was reached in: the sign of ``distance``."""
     dx = pose.x - problem.root.x
     dy = pose.y - problem.root.y
     fine = problem.stage.resolution.refinement if dx * dx + dy * dy < REFINED_RADIUS * REFINED_RADIUS else 1.0

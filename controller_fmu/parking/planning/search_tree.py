@@ -74,7 +74,7 @@ def pop_lowest(work: PlanningWork) -> int:
 
 
 def set_best(work: PlanningWork, node: int, word: int, cost: float) -> None:
-    """Remember the best distance to the target: along the tree to ``node``, then along ``word``."""
+    """Remember the best path to the target, of ``cost`` [m]: along the tree to ``node``, then along ``word``."""
     work.counts[PlanCount.BEST_NODE] = node
     work.counts[PlanCount.BEST_CODE] = work.word_code[word]
     work.values[PlanValue.BEST_COST] = cost

@@ -1,4 +1,4 @@
-"""The path that a search has found, made shorter: spans of it replaced by cheaper words that are free."""
+"""Shortcut smoothing: spans of the path found are replaced by cheaper words that are free of collision."""
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free, word_length
@@ -26,7 +26,7 @@ SAME_CURVATURE = 1e-9
 
 
 def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
-    """Copy the distance that was found from tree and word to the segments of the path."""
+    """Copy the path that was found from tree and word to the segments of ``work``."""
     work.counts[PlanCount.SEGMENT_COUNT] = 0
     depth = 0
     node = work.counts[PlanCount.BEST_NODE]
@@ -51,7 +51,7 @@ def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
 
 
 def append_segment(work: PlanningWork, pose: Pose, distance: float, k: float) -> Pose:
-    """Add a segment to the end of the path, or to its last segment if that goes on alike; returns where it ends."""
+    """Append ``distance`` [m] of curvature ``k`` [1/m] to the path, merged with a like segment; returns its end."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
     if distance == 0.0 or count >= WORK_SEGMENTS:
         return pose
@@ -103,13 +103,13 @@ def end_of(work: PlanningWork, segment: int) -> Pose:
 
 
 def joint_cost(distance: float, k: float, next_distance: float, next_k: float, problem: SearchProblem) -> float:
-    """Return the cost [m] of going on from one segment to the next."""
+    """Return the cost [m] of a joint: lengths [m], reverse negative, and curvatures [1/m] of the segments at it."""
     cost = abs(next_k - k) / problem.car.max_curvature * STEERING_COST
     return cost + CUSP_COST if distance * next_distance < 0.0 else cost
 
 
 def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> float:
-    """Return the cost [m] of some segments of the path with the joints at their ends."""
+    """Return the cost [m] of ``span`` segments of the path from number ``place`` on, with the joints at their ends."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
     cost = 0.0
     for segment in range(place, place + span):

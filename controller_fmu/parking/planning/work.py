@@ -106,7 +106,7 @@ class PlanCount(IntEnum):
     BEST_NODE = 3
     BEST_CODE = 4
     FIRST_FOUND_AT = 5
-    """Expansions until the first distance was found."""
+    """Expansions until the first path was found."""
     SEGMENT_COUNT = 6
     SPAN = 7
     SPAN_START = 8
@@ -125,7 +125,7 @@ class PlanCount(IntEnum):
     VERTEX_COUNT = 21
     """Vertices of the obstacle map in use."""
     MEASURED_SEGMENTS = 20
-    """Segments of the path kept about whose begin the room is known."""
+    """Segments of the path kept at whose start the clearance has been measured."""
     TRANSITION_TRIED = 22
     """Number of the transition that is tried."""
     ARC_COUNT = 23
@@ -149,7 +149,7 @@ class PlanValue(IntEnum):
 
 
 def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:
-    """Set an edge."""
+    """Set an edge from ``start`` to ``end`` [m], in the frame about the goal."""
     work.edge_x1[edge] = start.x
     work.edge_y1[edge] = start.y
     work.edge_x2[edge] = end.x
@@ -166,7 +166,7 @@ def clear_cost_to_go(work: PlanningWork, cells: int) -> None:
 def set_word(
     work: PlanningWork, word: int, code: int, cost: float, lengths: tuple[float, float, float, float, float]
 ) -> None:
-    """Set a word."""
+    """Set a word: its code, cost [m], and the lengths [m] of its segments, reverse negative."""
     work.word_code[word] = code
     work.word_cost[word] = cost
     work.word_a[word] = lengths[0]
@@ -177,12 +177,12 @@ def set_word(
 
 
 def discard_word(work: PlanningWork, word: int) -> None:
-    """Take a word out of the choice."""
+    """Exclude a word from the choice of the cheapest."""
     work.word_cost[word] = 1e9
 
 
 def set_segment(work: PlanningWork, segment: int, pose: Pose, distance: float, k: float) -> None:
-    """Set a segment of the path that begins at ``pose``."""
+    """Set a segment that begins at ``pose``: ``distance`` [m], reverse negative, and curvature ``k`` [1/m]."""
     work.segment_length[segment] = distance
     work.segment_curvature[segment] = k
     work.segment_x[segment] = pose.x

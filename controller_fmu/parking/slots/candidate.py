@@ -84,7 +84,7 @@ class SlotCandidate(NamedTuple):
     """Standard deviation of that line across the row [m], and of the middle of the gap along it."""
     middle_sigma: float = 0.0
     slope: float = 0.0
-    """Of the road against the frame's x axis: in an angled row the frame is square to the direction into the slot."""
+    """Tangent of the road's angle to the frame's x axis: in an angled row the frame is square to the way in."""
     is_nose_in: bool = False
     is_external: bool = False
     missing: float = 0.0

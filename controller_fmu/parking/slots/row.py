@@ -71,7 +71,7 @@ class SlotRow(NamedTuple):
     """From ahead to behind."""
     used: int = 0
     slope: float = 0.0
-    """Of the road against the frame's x axis: the frame of an angled row is square to the direction into a slot."""
+    """Tangent of the road's angle to the frame's x axis: the frame of an angled row is square to the way in."""
     heading_sigma: float = 0.0
     """Standard deviation [rad] of the frame's heading; 0: it is given."""
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.geometry.outline_distance import squared_edge_distance
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.planning.planner import search_until
 from controller_fmu.parking.planning.problem import PlanningRequest
@@ -32,13 +32,13 @@ def test_the_distance_to_an_edge_is_exact() -> None:
         a, b = drawn.uniform(-5.0, 5.0, (2, 2))
         if number % 4 == 1:
             b[number % 8 // 4] = a[number % 8 // 4]
-        found = math.sqrt(squared_edge_distance(a[0], a[1], b[0], b[1], CAR, FAR))
+        found = math.sqrt(edge_distance_squared(a[0], a[1], b[0], b[1], CAR, FAR))
         assert abs(found - sampled_distance((a[0], a[1]), (b[0], b[1]))) < 3e-3, (a, b)
 
 
 def test_an_edge_of_no_length_is_a_point() -> None:
-    assert math.isclose(squared_edge_distance(3.3, 0.95, 3.3, 0.95, CAR, FAR), 1.0)
-    assert squared_edge_distance(0.5, 0.5, 0.5, 0.5, CAR, FAR) == 0.0
+    assert math.isclose(edge_distance_squared(3.3, 0.95, 3.3, 0.95, CAR, FAR), 1.0)
+    assert edge_distance_squared(0.5, 0.5, 0.5, 0.5, CAR, FAR) == 0.0
 
 
 def edges_of(*polygons: list[tuple[float, float]]) -> int:

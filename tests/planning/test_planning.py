@@ -8,7 +8,7 @@ import pytest
 from shapely.geometry import LineString
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
-from controller_fmu.parking.geometry.outline_distance import edge_distance
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
 from controller_fmu.parking.planning.clearance_margin import EXAMINED_DISTANCE, MARGIN_LEFT, MAX_OFFSET, MAX_OVERRUN
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
@@ -42,7 +42,7 @@ def test_distance_to_an_edge_is_that_of_shapely() -> None:
     box = outline_of(Pose(-CAR.centre_ahead, 0.0, 0.0), CAR)
     for _ in range(500):
         ends = [draw.uniform(-6.0, 6.0) for _ in range(4)]
-        gap = math.sqrt(edge_distance(ends[0], ends[1], ends[2], ends[3], CAR, 1e6))
+        gap = math.sqrt(edge_distance_squared(ends[0], ends[1], ends[2], ends[3], CAR, 1e6))
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 

@@ -6,7 +6,7 @@ MIN_EDGE_SQUARE = 1e-12
 """A straight edge of a squared length [m2] below this, a micrometre, is a point."""
 
 
-def squared_edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
+def edge_distance_squared(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
     """Return the squared distance [m2] from the edge a-b to a car about the origin, at most ``best`` [m2].
 
     Where the infinite line misses the car, the car's corner nearest to it decides if it lies beside the edge;

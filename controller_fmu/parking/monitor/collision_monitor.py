@@ -14,7 +14,7 @@ from controller_fmu.parking.geometry.outline import (
     outline_frame,
     pose_along_arc,
 )
-from controller_fmu.parking.geometry.outline_distance import squared_edge_distance
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.map.landmark import (
     MAX_LANDMARKS,
     Landmark,
@@ -205,7 +205,7 @@ def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutli
     sin = frame.sin
     x = frame.x + outline.centre_ahead * cos
     y = frame.y + outline.centre_ahead * sin
-    square = squared_edge_distance(
+    square = edge_distance_squared(
         (a.x - x) * cos + (a.y - y) * sin,
         (a.y - y) * cos - (a.x - x) * sin,
         (b.x - x) * cos + (b.y - y) * sin,

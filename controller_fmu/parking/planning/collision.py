@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import max_point_speed_ratio, pose_along_arc
-from controller_fmu.parking.geometry.outline_distance import squared_edge_distance
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.maths import sign
@@ -42,7 +42,7 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
         ay = work.edge_y1[edge] - y
         bx = work.edge_x2[edge] - x
         by = work.edge_y2[edge] - y
-        best = squared_edge_distance(
+        best = edge_distance_squared(
             ax * cos + ay * sin,
             ay * cos - ax * sin,
             bx * cos + by * sin,

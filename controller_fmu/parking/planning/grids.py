@@ -115,7 +115,7 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
         for column in range(first, last + 1):
             x = (column + 0.5) * region.edge_cell - x1
             y = (row + 0.5) * region.edge_cell - y1
-            if squared_segment_distance(x, y, dx, dy) < reach * reach:
+            if segment_distance_squared(x, y, dx, dy) < reach * reach:
                 cell = row * region.edge_cell_count + column
                 place = work.cell_start[cell]
                 if fill:
@@ -125,7 +125,7 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
                     work.cell_start[cell] = place + 1
 
 
-def squared_segment_distance(x: float, y: float, dx: float, dy: float) -> float:
+def segment_distance_squared(x: float, y: float, dx: float, dy: float) -> float:
     """Return the squared distance [m2] from (x, y) to the segment from the origin to (dx, dy)."""
     square = dx * dx + dy * dy
     t = (x * dx + y * dy) / square if square > 0.0 else 0.0
@@ -167,7 +167,7 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
                 _cell(to_x + reach, region.cost_to_go_cell, count) + 1,
             ):
                 x = (column + 0.5) * region.cost_to_go_cell - x1
-                if squared_segment_distance(x, y, dx, dy) < reach * reach:
+                if segment_distance_squared(x, y, dx, dy) < reach * reach:
                     work.cost_to_go[row * count + column] = -1.0
 
 

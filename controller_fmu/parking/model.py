@@ -51,7 +51,7 @@ def parking_step(
 
 
 def is_usable(params: ParkingParams) -> bool:
-    """Return whether the parameters make sense."""
+    """Return whether the car's dimensions and steering and the sample time are usable; else the system fails."""
     car = params.car
     lock = car.steering.angle_limit / car.steering.ratio if car.steering.ratio > 0.0 else 0.0
     return (

@@ -1,4 +1,4 @@
-"""Out of a parallel slot: what the sensors measure at rest as landmarks, and a pose on the road beside the slot.
+"""Pulling out of a slot: what the sensors measure at rest as landmarks, and a pose on the road beside the slot.
 
 A neighbour's bumper is measured at rest, its flank is not: it is taken to stand out of the row by ``MAX_STAND_OUT``
 more than the vehicle. Where nothing is measured behind the row, it ends as far off: the way out is on the road's side.

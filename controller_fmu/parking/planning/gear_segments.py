@@ -32,7 +32,7 @@ def gear_segment(path: PlannedPath, segment: int) -> GearSegment:
 
 
 def distance_before(path: PlannedPath, whole: GearSegment, segment: int) -> float:
-    """Return the distance [m] from the begin of a gear segment to that of a segment."""
+    """Return the distance [m] from the start of a gear segment to that of ``segment`` in it."""
     distance = 0.0
     for number in range(whole.first, segment):
         distance += abs(path.segments[number].distance)
@@ -40,7 +40,7 @@ def distance_before(path: PlannedPath, whole: GearSegment, segment: int) -> floa
 
 
 def without_short_end(path: PlannedPath) -> PlannedPath:
-    """Return the path without last segments that are not worth turning the wheel for."""
+    """Return the path without last segments shorter than ``MIN_LENGTH``, transitions excepted."""
     used = path.used
     while used > 1 and abs(path.segments[used - 1].distance) < MIN_LENGTH and path.segments[used - 1].speed == 0.0:
         used -= 1

@@ -1,4 +1,4 @@
-"""The request to the planner, and the problem of one search: poses, a car, a margin, prices and resolution."""
+"""The request to the planner, and the problem of one search: poses, a car, a margin, costs and resolution."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,9 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from modelkit.vocabulary import Pose
 
 CUSP_COST = 2.0
-"""Price [m] of a change of direction."""
+"""Cost [m] of a change of direction."""
 STEERING_COST = 0.5
-"""Price [m] of turning the wheel from straight to full lock."""
+"""Cost [m] of turning the wheel from straight to full lock."""
 
 
 class DrivingDynamics(NamedTuple):

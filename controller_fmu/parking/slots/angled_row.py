@@ -291,7 +291,7 @@ def _side_log_likelihood(corners: tuple[RoadCorner, ...], line: CornerLine, firs
 
 
 def visible_log_likelihood(deviation: float) -> float:
-    """Return the log of the probability that a side is at least as long as is seen of it, so many sigma over the mean.
+    """Return the log-probability that a side is at least as long as its visible part, so many sigma over the mean.
 
     Q(z) = exp(-0.717 z - 0.416 z2) / 2 for z >= 0.
     """

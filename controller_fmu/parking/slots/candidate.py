@@ -236,12 +236,12 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
 
 
 def merging_penalty(member: RowMember) -> float:
-    """Return minus the log of the probability that two cars side by side are measured as one, as far off as a side."""
+    """Return minus the log of the probability that two cars side by side, as far off as ``member``, seem one side."""
     return MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
 
 
 def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
-    """Return the log-likelihood of an observed side; of an incomplete one only what is too long counts."""
+    """Return the log-likelihood of a side of ``length`` [m]; of an incomplete one only what is too long counts."""
     deviation = (length - mean) / sigma
     if not is_complete and deviation < 0.0:
         return 0.0

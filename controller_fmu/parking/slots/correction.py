@@ -1,4 +1,4 @@
-"""What is measured on the way into a slot corrects it: the neighbours' flanks, and what the slot ends at."""
+"""Correction of a slot while the vehicle enters it: by the neighbours' flanks, and by the obstacle at its end."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A slot from outside: as a candidate that the map must not contradict, or as the pose to stand at in it."""
+"""An external slot: as a candidate that the map must not contradict, or as the pose to park at in it."""
 
 import math
 

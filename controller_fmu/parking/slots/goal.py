@@ -60,7 +60,7 @@ def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
 
 
 def most_overhang(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
-    """Return how far [m] a vehicle may be found out of the line: GB/T's limit less what front and direction are unsure.
+    """Return the largest overhang [m] beyond the fronts' line: GB/T's limit less the uncertainty of line and heading.
 
     Turned by the direction's error a corner stands out by half of the vehicle's side along the row times that.
     """

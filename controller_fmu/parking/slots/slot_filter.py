@@ -165,7 +165,7 @@ def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params
 def update_slot(
     slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose, measured: float, variance: float, gate: float
 ) -> SlotFilter:
-    """Return the filter after an echo at ``measured`` [m] of ``variance`` [m2], if it came from the slot."""
+    """Return the filter after an echo at ``measured`` [m] of ``variance`` [m2], if within the ``gate`` (chi-square)."""
     echo = predict_echo(slot_filter, slot, sensor)
     if not echo.is_known:
         return slot_filter

@@ -17,6 +17,7 @@ from itertools import count
 from pathlib import Path
 
 MARK = ".part"
+PERMISSION_BITS = 0o777
 _numbers = count()
 _making = threading.Lock()
 ROOM = "apa-tmp-"
@@ -35,8 +36,8 @@ PLAIN = re.compile(r"[A-Za-z0-9_./\\:~-]+")
 def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
     """Give a new path beside ``path`` to write to, then move it there: no reader sees half of it.
 
-    Its folder is made. With ``sync`` it outlives a power cut. Raises ``OSError`` that names ``path``; then what was
-    there is still there.
+    Its folder is made, and permissions of a file that was there are kept. With ``sync`` it outlives a power cut. Raises
+    ``OSError`` that names ``path``; then what was there is still there.
     """
     try:
         if path.exists() and not path.is_file() and not path.is_dir():
@@ -49,6 +50,8 @@ def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
             yield part
             if sync:
                 sync_to_disk(part)
+            with suppress(OSError):  # nothing was there, or the file system has no permissions
+                part.chmod(path.stat().st_mode & PERMISSION_BITS)
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)

@@ -11,6 +11,7 @@ from orchestrator.evaluation.comparison.compare import DURATION, Comparison, com
 from orchestrator.evaluation.comparison.tolerance import Tolerance, read_tolerances
 from orchestrator.inputs.text.console import console, say
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.printable import readable
 from orchestrator.inputs.text.quantities import number
 from orchestrator.presentation.log.messages import read_messages
 from orchestrator.presentation.log.read_log import log_file, read_log
@@ -83,8 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _names(logs: Sequence[Path]) -> list[str]:
     """Return the names of runs: of their folders, or of the files where a folder has several."""
-    folders = [log.resolve().parent.name for log in logs]
-    return folders if len(set(folders)) == len(folders) else [log.stem for log in logs]
+    folders = [readable(log.resolve().parent.name) for log in logs]
+    return folders if len(set(folders)) == len(folders) else [readable(log.stem) for log in logs]
 
 
 def _print(found: Comparison) -> None:

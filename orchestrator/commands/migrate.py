@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from fmus.files import write_whole
 from orchestrator.inputs.scenario.migration import check_migrated, migrate
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
@@ -48,5 +49,4 @@ def _write(path: Path, text: str, output: str | None, *, is_new: bool) -> None:
     if output == "-":
         print(text, end="")
     elif output or is_new:
-        with Path(output or path).open("w", encoding="utf-8", newline="") as file:
-            file.write(text)
+        write_whole(Path(output or path), text)

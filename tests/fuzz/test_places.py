@@ -156,6 +156,20 @@ def test_an_odd_path(command: str, kept: Path, tmp_path: Path) -> None:
     assert len(list(folder.iterdir())) >= 1
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="names are any bytes on Linux only")
+@pytest.mark.parametrize("command", ["compare --html", "report", "identify"])
+def test_a_log_in_a_folder_whose_name_is_no_word(command: str, kept: Path, tmp_path: Path) -> None:
+    folder = tmp_path / os.fsdecode(b"a b\xffd")
+    folder.mkdir()
+    log = str(shutil.copy(kept / "run.mcap", folder))
+    options = {"compare --html": ["compare", log, log, "--html"], "report": ["report", log, "--out"]}
+    given = [*options.get(command, ["identify", log, "--out"]), str(folder / "new")]
+    answer = ask(given, 60.0)
+    assert not answer.mistake, answer.mistake
+    assert answer.code in (0, 1), answer.err
+    assert (folder / "new").is_file() or (folder / "new" / "report.html").is_file()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["python", "native"])
 def test_without_home_in_odd_folders_and_a_narrow_terminal(kind: str, tmp_path: Path) -> None:

@@ -163,3 +163,17 @@ def test_a_car_keeps_the_numbers_of_its_sensors(tmp_path: Path, numbers: tuple[i
     write_car(tmp_path / "car.yaml", base, {"car.wheelbase": 2.6}, "a test")
     written = base_car(str(tmp_path / "car.yaml"), {}).values
     assert written == {**base.values, "car.wheelbase": 2.6}
+
+
+@pytest.mark.parametrize("where", [64, 200, 3000])
+def test_a_damaged_mdf_file_is_one_line(
+    where: int, log: dict[str, Series], tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """asammdf prints a traceback of its own, and another one where it forgets what it could not open."""
+    path = tmp_path / "drive.mf4"
+    write_mf4(path, log)
+    path.write_bytes(path.read_bytes()[:where] + bytes(500))
+    assert main(["identify", str(path), *COLUMNS]) == 2
+    out, err = capfd.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert err.startswith(f"apa: {path}: is no MDF file")

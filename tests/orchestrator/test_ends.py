@@ -218,6 +218,16 @@ def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
     assert [item.name for item in path.parent.iterdir()] == ["file.txt"]
 
 
+@posix
+def test_who_may_read_a_file_is_kept_when_it_is_written_again(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    for text in ("one", "two"):
+        files.write_whole(path, text)
+        path.chmod(0o600)
+    files.write_whole(path, "three")
+    assert (path.read_text(), path.stat().st_mode & 0o777) == ("three", 0o600)
+
+
 def test_what_is_in_the_way_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(IsADirectoryError) as found:

@@ -1,5 +1,6 @@
 """Old names are rejected in one line with the new one, and ``apa migrate`` rewrites files and touches no more."""
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,7 @@ from orchestrator.inputs.text.renamed_names import (
     new_name,
 )
 from orchestrator.studies.sweep.study.study_file import load_study
+from tests.fuzz.limits import ask
 
 OLD = """\
 # a comment of mine
@@ -127,6 +129,53 @@ def test_old_and_new_name_together_are_refused(tmp_path: Path, capsys: pytest.Ca
     assert main(["migrate", str(file)]) == 2
     assert "requirements: has the old and the new name of this key" in capsys.readouterr().err
     assert file.read_text() == "limits: []\nrequirements: []\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "start: {x: 1.?}\n",
+        "a: {b: 1, c?}\n",
+        "a :\t1\n",
+        'expect: "p\\x61rked"\n',
+        "a: !x 1\n",
+        "[" * 50,
+        "\ufeffa: 1\n",
+    ],
+)
+def test_what_two_readers_of_yaml_read_differently_is_no_mistake_of_ours(text: str, tmp_path: Path) -> None:
+    file = tmp_path / "odd.yaml"
+    file.write_text(text, encoding="utf-8")
+    answer = ask(["migrate", str(file)])
+    assert not answer.mistake, answer.mistake
+    assert answer.code in (0, 2)
+    assert answer.err.splitlines()[-1].startswith("apa: ")
+
+
+def test_many_keys_are_looked_through_at_once(tmp_path: Path) -> None:
+    file = tmp_path / "many.yaml"
+    file.write_text("".join(f"k{number}: 1\n" for number in range(20_000)))
+    answer = ask(["migrate", str(file), "--check"], 10.0)
+    assert (answer.code, answer.mistake) == (0, "")
+
+
+def test_a_file_that_cannot_be_written_is_left_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, data: bytes) -> int:
+        with path.open("wb") as file:
+            file.write(data[: len(data) // 2])
+        raise OSError(errno.ENOSPC, "no space", str(path))
+
+    file = tmp_path / "old.yaml"
+    file.write_text(OLD)
+    file.chmod(0o640)
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_bytes", full)
+        answer = ask(["migrate", str(file)])
+    assert answer.code == 2
+    assert "the disk is full" in answer.err
+    assert file.read_text() == OLD
+    assert main(["migrate", str(file)]) == 0
+    assert (file.read_text(), file.stat().st_mode & 0o777) == (NEW, 0o640)
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ def ran(words: list[str], folder: Path, limits: dict[str, int]) -> subprocess.Co
     command = [sys.executable, "-c", "from orchestrator.cli import main; raise SystemExit(main())", *words]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     return subprocess.run(
-        command, cwd=folder, env=environment, preexec_fn=limit, capture_output=True, text=True, check=False
+        command, cwd=folder, env=environment, preexec_fn=limit, capture_output=True, text=True, check=False, timeout=300
     )
 
 
@@ -54,6 +54,25 @@ def test_a_study_neither_hangs_nor_aborts_when_memory_is_scarce(megabytes: int, 
     assert done.returncode == 2, done.stderr
     assert done.stderr.count("\n") == 1
     assert "more memory" in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are kept by Linux")
+@pytest.mark.parametrize(
+    "command", ["rerun", *(pytest.param(item, marks=pytest.mark.release) for item in ("csv", "mf4", "ros2"))]
+)
+def test_an_export_to_a_disk_that_is_full_ends_in_one_line(command: str, tmp_path: Path) -> None:
+    """rerun-sdk waits for ever where it writes to a file itself."""
+    pytest.importorskip({"mf4": "asammdf"}.get(command, command if command == "rerun" else "mcap"))
+    out = tmp_path / "out"
+    assert ran([*RUN, "--set", "stop_time=1", "--out", str(out)], tmp_path, {}).returncode in (0, 1)
+    before = sorted(out.iterdir())
+    words = ["export", command, str(out / "run.mcap")]
+    done = ran(words, tmp_path, {"RLIMIT_FSIZE": 8192})
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "File too large" in done.stderr
+    assert sorted(out.iterdir()) == before
 
 
 def test_a_folder_that_is_gone_is_named(tmp_path: Path) -> None:

@@ -104,6 +104,13 @@ def test_a_list_that_is_set_replaces_the_list(tmp_path: Path, text: str) -> None
     assert found == ({} if "[]" in text else {"scene.boxes[1].x": 5.0, "scene.boxes[1].y": 6.0})
 
 
+def test_a_chain_of_files_without_end_is_refused(tmp_path: Path) -> None:
+    for place in range(50):
+        (tmp_path / f"{place}.yaml").write_text(f"name: x\nextends: {place + 1}.yaml\n")
+    with pytest.raises(BadInput, match=r"0.yaml:2: extends: a chain of more than 40 files"):
+        load_scenario(str(tmp_path / "0.yaml"), [])
+
+
 def test_title_is_not_inherited(tmp_path: Path) -> None:
     assert load_scenario(write(tmp_path, "extends: guo2015-case4")).title == ""
 

@@ -26,6 +26,8 @@ from orchestrator.inputs.text.yaml_file import explain, place_in, read_mapping, 
 NOT_WRITTEN = ("file", "overrides", "unsupported_parameters", "texts")
 FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
 INHERITED_NOT = ("name", "title", "description", "extends")
+MAX_EXTENDED = 40
+"""Files that extend each other."""
 SETS = "--set"
 """Key of the uppermost layer with the words it was made from."""
 NOT_MERGED = (*MODELS, "scene", "car", SETS)
@@ -182,6 +184,8 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
         raise BadInput(
             f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="extends"
         )
+    if len(seen) >= MAX_EXTENDED:
+        raise BadInput(f"a chain of more than {MAX_EXTENDED} files", file=seen[0], key="extends")
     content = _resolve_files(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
     base = content.get("extends")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))

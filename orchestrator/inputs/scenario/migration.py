@@ -4,6 +4,7 @@ Only the renamed words change: comments, order, quotes and line ends stay as the
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +13,7 @@ import yaml
 
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.renamed_names import SCENARIO_KEYS, VALUES, current_name
-from orchestrator.inputs.text.yaml_file import read_yaml
+from orchestrator.inputs.text.yaml_file import read_nodes, read_yaml
 
 SECTIONS_OF_A_TEST = ("inputs", "parameters", "ranges")
 """Of an open-loop test, which names the variables of its model without their owner."""
@@ -49,7 +50,7 @@ def migrate(path: Path) -> Migrated:
     read_yaml(path)
     with path.open(encoding="utf-8", newline="") as file:
         text = file.read()
-    root = yaml.compose(text, Loader=yaml.SafeLoader)
+    root = read_nodes(text, path)
     edits = sorted(set(_edits(root, text))) if root is not None else []
     changes = [Change(edit.line, text[edit.start : edit.end], edit.new) for edit in edits]
     for edit in reversed(edits):
@@ -59,13 +60,9 @@ def migrate(path: Path) -> Migrated:
 
 def check_migrated(path: Path, found: Migrated) -> None:
     """Raise ``BadInput`` if a rewritten file would have a key twice, as it already had old and new name."""
-    try:
-        root = yaml.compose(found.text, Loader=yaml.SafeLoader)
-    except yaml.YAMLError as error:
-        raise BadInput(f"cannot be migrated: {error}", file=path) from error
-    for node in _mappings(root):
-        keys = [key.value for key, _ in node.value]
-        twice = next((key for key in keys if keys.count(key) > 1), None)
+    for node in _mappings(read_nodes(found.text, path)):
+        counts = Counter(key.value for key, _ in node.value)
+        twice = next((key for key, count in counts.items() if count > 1), None)
         if twice is not None:
             raise BadInput("has the old and the new name of this key; keep one of them", file=path, key=str(twice))
 
@@ -149,8 +146,8 @@ def _key(key: yaml.Node, text: str, path: tuple[str, ...]) -> Iterator[_Edit]:
 
 def _value(key: str, value: yaml.ScalarNode, text: str, *, is_item: bool = False) -> Iterator[_Edit]:
     new = VALUES.get(current_name(key), {}).get(str(value.value))
-    if new is not None:
-        raw = text[value.start_mark.index : value.end_mark.index]
+    raw = text[value.start_mark.index : value.end_mark.index]
+    if new is not None and str(value.value) in raw:
         at = value.start_mark.index + raw.index(str(value.value))
         yield _Edit(at, at + len(str(value.value)), value.start_mark.line + 1, new)
     elif key == "signal" or "." in str(value.value) or is_item:

@@ -26,7 +26,7 @@ class BadInput(ValueError):  # noqa: N818 - said as it is
         line = line_of(file, at or key)
         where = None if file is None else f"{file}:{line}" if line else str(file)
         place = ": ".join(part for part in (where, key) if part)
-        super().__init__(f"{place}: {text}" if place else text)
+        super().__init__(as_line(f"{place}: {text}" if place else text))
 
 
 def line_of(file: object, key: str | None) -> int:
@@ -118,6 +118,8 @@ MAX_CHOICES = 8
 """Names that a message lists before it says how many more there are."""
 MOST_EXCERPT = 500
 """Letters of another library's message."""
+MAX_MESSAGE, MAX_ENDING = 2_000, 300
+"""Letters of a message of ours, and of its end where it is cut."""
 MOST_LETTERS = 100
 """A word longer than this is like no other."""
 
@@ -132,6 +134,13 @@ def format_value(value: object) -> str:
     """Return a value for a message: as Python writes it, cut where it is long."""
     text = repr(value)
     return text if len(text) <= MOST_LETTERS else f"{text[:60]}... ({len(text)} letters)"
+
+
+def as_line(text: str) -> str:
+    """Return a message without line breaks; a long one keeps its beginning and its end."""
+    text = " ".join(text.splitlines())
+    middle = f"... ({len(text)} letters) ..."
+    return text if len(text) <= MAX_MESSAGE else text[: MAX_MESSAGE - MAX_ENDING] + middle + text[-MAX_ENDING:]
 
 
 def excerpt(error: object) -> str:

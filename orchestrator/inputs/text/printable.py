@@ -11,6 +11,11 @@ def printable(text: str) -> str:
     return CONTROL.sub(lambda found: _number(ord(found[0])), text)
 
 
+def readable(name: str) -> str:
+    """Return the name of a file with a question mark in place of each byte that is no UTF-8, so it can be written."""
+    return name.encode(errors="surrogateescape").decode(errors="replace")
+
+
 def is_printable(text: str) -> bool:
     """Return whether a text is one line without control characters."""
     return CONTROL.search(text) is None and "\n" not in text and "\t" not in text

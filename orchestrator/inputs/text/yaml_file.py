@@ -144,10 +144,22 @@ def read_yaml(path: Path) -> Any:
     try:
         return _parse(text, str(path))
     except (yaml.YAMLError, ValueError) as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        problem = " ".join(str(getattr(error, "problem", None) or error).split())
-        raise BadInput(f"{line}{problem}", file=path) from error
+        raise _explain_syntax(error, path) from error
+
+
+def read_nodes(text: str, path: Path) -> yaml.Node | None:
+    """Return the nodes of a YAML text, which say where in it they stand; None if it is empty. Raises ``BadInput``."""
+    try:
+        return _Loader(text).get_single_node()
+    except (yaml.YAMLError, ValueError) as error:
+        raise _explain_syntax(error, path) from error
+
+
+def _explain_syntax(error: Exception, path: Path) -> BadInput:
+    mark = getattr(error, "problem_mark", None)
+    line = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+    problem = " ".join(str(getattr(error, "problem", None) or error).split())
+    return BadInput(f"{line}{problem}", file=path)
 
 
 def read_value(text: str, key: str) -> Any:

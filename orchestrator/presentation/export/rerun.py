@@ -1,15 +1,12 @@
 """``apa export rerun``: a run for the Rerun viewer, with a blueprint. Needs rerun-sdk."""
 
 import argparse
-import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fmus.files import whole
+from fmus.files import write_whole
 from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.geometry import CarOutline, boxes, place, sample_path, slot_box, vehicle_parameters
@@ -69,29 +66,18 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
         raise BadInput(missing_package("rerun-sdk", "export")) from None
     name = str(recording.info.get("scenario", {}).get("name", path.stem))
     stream = rr.RecordingStream(f"apa-cosim {name}", recording_id=path.stem)
-    with whole(path) as part, _disk_full_error():
-        stream.save(str(part), default_blueprint=blueprint(recording))
-        _still(rr, stream, recording)
-        _moving(rr, stream, recording)
-        for signal in names:
-            _curve(rr, stream, recording, signal)
-        for line in words:
-            stream.set_time(TIMELINE, duration=line.t)
-            stream.log("messages", rr.TextLog(f"{line.name}: {line.text}", level=_level(line.level)))
-        stream.flush()
-        stream.disconnect()
-
-
-@contextmanager
-def _disk_full_error() -> Iterator[None]:
-    """Raise the ``OSError`` of which rerun-sdk reports the text only."""
-    try:
-        yield
-    except RuntimeError as error:
-        number = re.search(r"\(os error (\d+)\)", str(error))
-        if number is None:
-            raise
-        raise OSError(int(number[1]), str(error)) from error
+    stored = stream.memory_recording()  # rerun-sdk waits for ever where it cannot write to a file
+    stream.send_blueprint(blueprint(recording), make_active=False, make_default=True)
+    _still(rr, stream, recording)
+    _moving(rr, stream, recording)
+    for signal in names:
+        _curve(rr, stream, recording, signal)
+    for line in words:
+        stream.set_time(TIMELINE, duration=line.t)
+        stream.log("messages", rr.TextLog(f"{line.name}: {line.text}", level=_level(line.level)))
+    stream.flush()
+    write_whole(path, stored.drain_as_bytes())
+    stream.disconnect()
 
 
 def blueprint(recording: Recording) -> Any:

@@ -19,6 +19,7 @@ from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.summary import FmuUsed, Lateness, StartRecord
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.printable import readable
 from orchestrator.inputs.text.quantities import MOST_WHOLE
 from orchestrator.inputs.text.yaml_file import explain
 from orchestrator.presentation.log.protobuf_rows import Decoder
@@ -177,7 +178,7 @@ def log_file(text: str) -> Path:
 
 def log_name(log: Path) -> str:
     """Return the name of a log, or of the folder of its run."""
-    return log.stem if log.stem != "run" else log.resolve().parent.name
+    return readable(log.stem if log.stem != "run" else log.resolve().parent.name)
 
 
 def read_info(path: Path) -> dict[str, Any]:

@@ -1,7 +1,10 @@
 """Logs of drives as columns over time: CSV, MDF 4, and MCAP of ours or with protobuf or JSON messages."""
 
+import gc
+import logging
+import sys
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmus.installation import missing_package
-from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, excerpt, suggestion_or_choices
 from orchestrator.inputs.text.quantities import unit_symbol
 from orchestrator.inputs.text.table_file import TableError, read_table, unit_in_name
 from orchestrator.presentation.log.read_log import read_info, read_log
@@ -99,6 +102,26 @@ class _CsvLog(Log):
             raise BadInput(str(error), file=self.path) from None
 
 
+def _from_mdf(path: Path, read: Callable[[], Any]) -> Any:
+    """Return what asammdf reads; it prints nothing of a damaged file, nor does what it leaves behind of one.
+
+    Raises ``BadInput`` for whatever it raises.
+    """
+    logging.getLogger("asammdf").disabled = True
+    before, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    try:
+        try:
+            return read()
+        except MemoryError:
+            raise
+        except Exception as error:
+            reason = f"is no MDF file ({type(error).__name__}: {excerpt(error)})"
+        gc.collect()
+        raise BadInput(reason, file=path)
+    finally:
+        sys.unraisablehook = before
+
+
 class _MdfLog(Log):
     def __init__(self, path: Path) -> None:
         super().__init__(path)
@@ -106,10 +129,7 @@ class _MdfLog(Log):
             from asammdf import MDF
         except ImportError:
             raise BadInput(missing_package("asammdf", "export")) from None
-        try:
-            self._file = MDF(path)
-        except Exception as error:
-            raise BadInput(f"is no MDF file ({type(error).__name__}: {error})", file=path) from error
+        self._file = _from_mdf(path, lambda: MDF(path))
         self._names = [name for name in self._file.channels_db if name not in ("time", "t")]
 
     def names(self) -> list[str]:
@@ -119,7 +139,7 @@ class _MdfLog(Log):
         places = self._file.channels_db[column]
         if len(places) > 1:
             raise BadInput(f"has {len(places)} channels {column}: rename one of them", file=self.path)
-        found = self._file.get(column, raw=SIGNALS[signal].kind is not float)
+        found = _from_mdf(self.path, lambda: self._file.get(column, raw=SIGNALS[signal].kind is not float))
         if found.samples.dtype.kind not in "fiub" or found.samples.ndim != 1:
             raise BadInput(f"channel {column} has no numbers", file=self.path)
         values = self.convert(found.samples.astype(np.float64), unit or found.unit or None, column, signal)

@@ -108,7 +108,7 @@ def _recordings(found: Identification, title: str) -> tuple[Recording, Recording
         name: np.interp(t, drive.compared[name].t, values)
         for name, values in problem.residuals(estimate.theta, estimate.noise).items()
     }
-    info = {"scenario": {"name": title, "title": title}}
+    info = {"scenario": {"name": "identified", "title": title}}
     names = {**measured, **requests}
     variables = {f"{PREFIX}{name}": SIGNALS[name] for name in names}
     variables |= {f"{PREFIX}{name}": item for name, item in PARAMETERS.items()}

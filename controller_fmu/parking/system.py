@@ -331,7 +331,7 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
 
 
 def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
-    """Return the memory at the begin of a search; a slot that was shown is forgotten, the map is not."""
+    """Return the memory at the start of a search; a slot that was shown is forgotten, the map is not."""
     if before == ParkingState.CONFIRMING:
         refused = memory.search.slot if memory.reason != Reason.NONE else memory.search.refused
         offered = memory.search.offered

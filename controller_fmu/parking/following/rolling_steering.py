@@ -93,7 +93,7 @@ def transition_after(path: PlannedPath, segment: int, context: FollowingContext)
 def _transition_at(
     path: PlannedPath, whole: GearSegment, segment: int, at: float, context: FollowingContext
 ) -> CurvatureJoint:
-    """Return the joint at the end of ``segment``, ``at`` [m] from the begin of the stretch."""
+    """Return the joint at the end of ``segment``, ``at`` [m] from the start of the gear segment."""
     if segment >= whole.last:
         return CurvatureJoint()
     if is_transition(path, segment + 1):
@@ -132,7 +132,7 @@ def _distance_to_transition(path: PlannedPath, whole: GearSegment, segment: int,
 
 
 def is_transition(path: PlannedPath, segment: int) -> bool:
-    """Return whether the path has a transition about the begin of ``segment``; of their number: at its end."""
+    """Return whether the path has a transition about the start of ``segment``; ``path.used``: at its end."""
     before = path.segments[segment - 1].speed if segment > 0 else 0.0
     return before > 0.0 or (segment < path.used and path.segments[segment].speed > 0.0)
 
@@ -211,7 +211,7 @@ def upcoming_stop(path: PlannedPath, segment: int, left: float, context: Followi
 
 
 def standstill_before(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
-    """Return the standstill before ``segment``; of their number: that at the end."""
+    """Return the standstill before ``segment``; ``path.used``: that at the end of the path."""
     before = reference_at(path, segment - 1, 0.0, context).curvature if segment > 0 else 0.0
     next_curvature = (
         reference_at(path, segment, abs(path.segments[segment].distance), context).curvature

@@ -126,7 +126,7 @@ def _is_transition_free(work: PlanningWork, joint: Pose, segment: int, problem: 
 
 
 def _offset_at(work: PlanningWork, segment: int, past: float) -> PathOffset:
-    """Return where the car is ``past`` [m] behind the begin of a segment, by the transitions before it in its gear."""
+    """Return where the car is ``past`` [m] behind the start of a segment, by the transitions before it in its gear."""
     lateral = 0.0
     turned = 0.0
     distance = past
@@ -150,7 +150,7 @@ def _offset_at(work: PlanningWork, segment: int, past: float) -> PathOffset:
 
 
 def _transition(work: PlanningWork, segment: int) -> float:
-    """Return the length [m] of the transition about the begin of a segment, by what it may take the car off."""
+    """Return the length [m] of the transition about the start of a segment, by what it may take the car off."""
     longest = 2.0 * min(_gear_distance(work, segment, -1), _gear_distance(work, segment, 1))
     return transition_length(
         work.best_clearance[segment], work.best_curvature[segment] - work.best_curvature[segment - 1], longest
@@ -158,7 +158,7 @@ def _transition(work: PlanningWork, segment: int) -> float:
 
 
 def _gear_distance(work: PlanningWork, segment: int, turn: int) -> float:
-    """Return the distance [m] in a gear from a segment's begin on (``turn`` 1) or before (-1), up to a transition."""
+    """Return the distance [m] in a gear from a segment's start on (``turn`` 1) or before (-1), up to a transition."""
     distance = 0.0
     number = segment if turn > 0 else segment - 1
     while (
@@ -181,7 +181,7 @@ def _joint_pose(work: PlanningWork, start: Pose, segment: int) -> Pose:
 
 
 def _along(work: PlanningWork, joint: Pose, segment: int, past: float) -> Pose:
-    """Return the pose on the path ``past`` [m] behind the begin of a segment, or before it, in the same gear."""
+    """Return the pose on the path ``past`` [m] behind the start of a segment, or before it, in the same gear."""
     pose = joint
     left = abs(past)
     number = segment if past > 0.0 else segment - 1

@@ -78,7 +78,7 @@ class PathSegment(NamedTuple):
     curvature: float = 0.0
     """Curvature [1/m]."""
     clearance: float = 0.0
-    """At the path's begin: what is free beyond the margin [m]. Where the gear changes: how far the segment before may
+    """At the path's start: what is free beyond the margin [m]. Where the gear changes: how far the segment before may
     go on. Else: how far beside the path steering while rolling may take the car."""
     speed: float = 0.0
     """Largest speed [m/s] on a transition, where the wheel turns; 0: it is not one."""

@@ -45,14 +45,14 @@ NO_JOINT = -2
 
 
 class SteeringTransition(NamedTuple):
-    """How the front wheels turn about the begin of a segment."""
+    """How the front wheels turn about the start of a segment."""
 
     stops: bool = False
     angle_before: float = 0.0
     """[rad]"""
     angle_after: float = 0.0
     early: float = 0.0
-    """Time [s] for which they turn before the begin of the segment."""
+    """Time [s] for which they turn before the start of the segment."""
     late: float = 0.0
     """And behind it."""
     speed: float = 0.0
@@ -176,7 +176,7 @@ def _arc_count(work: PlanningWork, stops: bool, time: float) -> int:
 
 
 def _transition(work: PlanningWork, joint: int, dynamics: DrivingDynamics) -> SteeringTransition:
-    """Return the transition about the begin of a segment; of the number of segments: that at the end.
+    """Return the transition about the start of segment ``joint``; their count: that at the end.
 
     A fraction of it in one gear is driven at that fraction of the speed. About a stop it is that fraction of the turn:
     the wheel turns longer where the vehicle slows down than where it sets out, by the root of the accelerations, as the
@@ -205,7 +205,7 @@ def _transition(work: PlanningWork, joint: int, dynamics: DrivingDynamics) -> St
 
 
 def _distance_in(time: float, transition: SteeringTransition, acceleration: float) -> float:
-    """Return the distance [m] from the begin of a segment, a stop or not, that takes ``time`` [s]."""
+    """Return the distance [m] from the start of a segment, a stop or not, that takes ``time`` [s]."""
     speed = transition.speed
     if not transition.stops:
         return speed * time
@@ -252,7 +252,7 @@ def _lay_out(work: PlanningWork, dynamics: DrivingDynamics) -> None:
 def _add_half(
     work: PlanningWork, transition: SteeringTransition, late: bool, direction: float, dynamics: DrivingDynamics
 ) -> None:
-    """Add the arcs of a transition before or behind (``late``) the begin of a segment; none sets out too fast."""
+    """Add the arcs of a transition before or behind (``late``) the start of a segment; none sets out too fast."""
     time = transition.late if late else transition.early
     count = _arc_count(work, transition.stops, time)
     rate = sign(transition.angle_after - transition.angle_before) * dynamics.rate

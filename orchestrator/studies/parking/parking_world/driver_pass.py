@@ -22,7 +22,7 @@ BEYOND_SLOT = 12.0
 
 
 class DriverPass(NamedTuple):
-    """Pose of the rear axle's middle at the begin, speed, and the car's size; SI units."""
+    """Pose of the rear axle's middle at the start, speed, and the car's size; SI units."""
 
     x: Array
     y: Array
@@ -75,7 +75,7 @@ def first_time_at(swept: DriverPass, x: Array) -> Array:
 
 
 def last_time_at(swept: DriverPass, x: Array) -> Array:
-    """Return when [s] a driver who slows down from the begin, and does not stop, has brought the rear axle there."""
+    """Return when [s] a driver who slows down from the start, and does not stop, has brought the rear axle there."""
     return _time_at(swept, x, np.minimum(swept.speed, ADVISED_SPEED))
 
 

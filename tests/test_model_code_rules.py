@@ -1,6 +1,7 @@
 """Model files import what both CPython and C have; all else about them the translator itself says."""
 
 import ast
+import re
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,35 @@ def faults(source: Any, room: Any) -> Any:
 @pytest.mark.parametrize("name", model_files())
 def test_model_file_imports_model_files(name: Any) -> None:
     assert faults((ROOT / name).read_text(), name.split("/")[0]) == []
+
+
+UNIT_OR_SIGN = re.compile(r"\[[^\]]+\]|\b1(\.0)?\b")
+"""A unit in brackets, or the values of a sign or side."""
+
+
+def functions_without_unit(source: str) -> list[str]:
+    """Return the public functions with float arguments or result whose docstring states neither unit nor sign."""
+    public = [item for item in ast.parse(source).body if isinstance(item, ast.FunctionDef) and item.name[0] != "_"]
+    return [
+        item.name
+        for item in public
+        if any(
+            isinstance(of, ast.Name) and of.id == "float"
+            for of in (*(a.annotation for a in item.args.args), item.returns)
+        )
+        and not UNIT_OR_SIGN.search(ast.get_docstring(item) or "")
+    ]
+
+
+@pytest.mark.parametrize("name", [name for name in model_files() if name.startswith("controller_fmu/parking/")])
+def test_public_functions_of_the_parking_system_state_their_units(name: str) -> None:
+    assert functions_without_unit((ROOT / name).read_text(encoding="utf-8")) == []
+
+
+def test_a_function_without_a_unit_is_found() -> None:
+    source = 'def speed(x: float) -> float:\n    """Return the speed{}."""\n    return x\n'
+    assert functions_without_unit(source.format("")) == ["speed"]
+    assert functions_without_unit(source.format(" [m/s]")) == []
 
 
 @pytest.mark.parametrize("name", MODELS)

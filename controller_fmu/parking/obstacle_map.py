@@ -258,7 +258,7 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
 def without_explained(
     echo: EchoObstacle, obstacles: ObstacleMap, half_angle: float, params: MonitorParams
 ) -> EchoObstacle:
-    """Return a remembered echo, or none if ``obstacles`` explain it by now: one lies as near to its sensor.
+    """Return a remembered echo, or none if ``obstacles`` in its cone (``half_angle`` [rad]) explain it by now.
 
     Its point on the sensor's axis is only one of the arc that it may have come from.
     """

@@ -210,7 +210,7 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
 
 
 def surface_near(expected: PredictedRange, measured: float, params: MonitorParams) -> EchoSurface:
-    """Return the side that an echo came from, as far as half way to the next sensor, which detects it beyond.
+    """Return the side that an echo at ``measured`` [m] came from, as far as half way to the next sensor.
 
     A farther echo shows that no side is where one was expected, a nearer one that it is displaced; an end has no side.
     """

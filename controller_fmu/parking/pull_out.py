@@ -82,7 +82,7 @@ def road_side(chosen: int) -> float:
 def with_neighbours(
     landmarks: tuple[Landmark, ...], box: FreeBox, side: float, pose: Pose, car: Car, params: MappingParams
 ) -> tuple[Landmark, ...]:
-    """Return the landmarks with the neighbours' bumpers and flanks, as far as they are measured, and the row's end."""
+    """Return the landmarks with what is measured of the neighbours and the row's end; ``side`` of the road: 1, -1."""
     road = side * (0.5 * car.width + MAX_STAND_OUT)
     deep = road - side * CAR_WIDTH
     far = CAR_LENGTH + car.ultrasonic.max_range
@@ -101,7 +101,7 @@ def with_neighbours(
 
 
 def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline) -> Pose:
-    """Return the pose beside the neighbour ahead, on the road on one side, of a vehicle that stands at ``pose``."""
+    """Return the pose on the road, on its ``side`` (1 left, -1 right), of a vehicle that stands at ``pose``."""
     ahead = min(box.front, outline.centre_ahead + outline.half_length) + CAR_LENGTH - outline.centre_ahead
     point = point_from_frame(ahead, side * (2.0 * outline.half_width + MAX_STAND_OUT + ROAD_CLEARANCE), pose)
     return Pose(point.x, point.y, pose.heading)

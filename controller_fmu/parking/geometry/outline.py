@@ -91,7 +91,7 @@ class Extent(NamedTuple):
 def extent_within(pose: Pose, outline: VehicleOutline, frame: Pose, side: float, low: Point, high: Point) -> Extent:
     """Return the extent of the boundary of a vehicle at ``pose`` as far as it lies within the box ``low`` to ``high``.
 
-    The box and the result are in ``frame``, its y axis multiplied by ``side``.
+    The box and the result [m] are in ``frame``, its y axis multiplied by ``side`` (1, -1).
     """
     cos = math.cos(pose.heading)
     sin = math.sin(pose.heading)

@@ -206,7 +206,7 @@ def first_of_body(chain: EchoChain, variance: float) -> int:
 
 
 def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, variance: float) -> bool:
-    """Return whether a segment returns three of four echoes of its chain where the ``sensor`` measured them.
+    """Return whether a segment returns three of four echoes (``variance`` [m2]) where the ``sensor`` measured them.
 
     Else they came from several bodies, or from where the cone's boundary met a side turned away from the sensor: that
     point moves along the side, so the ranges are those of another line. The boundary may be off by ``CONE_SIGMA``.

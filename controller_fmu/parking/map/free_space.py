@@ -30,7 +30,7 @@ class FreeSpace(NamedTuple):
 
 
 def add_ray(rays: tuple[Ray, ...], sensor: SensorPose, measured: float) -> tuple[Ray, ...]:
-    """Return the rays of a side with one more; the oldest is forgotten."""
+    """Return the ``MAX_RAYS`` rays of a flank with one of range ``measured`` [m] more; the oldest is forgotten."""
     last = rays[MAX_RAYS - 1]
     dx = sensor.x - last.sensor.x
     dy = sensor.y - last.sensor.y

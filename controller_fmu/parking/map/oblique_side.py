@@ -152,7 +152,7 @@ def is_over(run: BoundaryRun, status: int, point: Point, measured: float, varian
 
 
 def next_run(run: BoundaryRun, status: int, point: Point, measured: float, over: bool) -> BoundaryRun:
-    """Return a run after a reading, or the one that begins after it is ``over``."""
+    """Return a run after a reading at ``measured`` [m], or the one that begins after it is ``over``."""
     if status != ReadingStatus.ECHO:
         return BoundaryRun(range=NO_HIT) if over or run.n == 0 else run._replace(lost=run.lost + 1)
     if over or run.n == 0:
@@ -217,7 +217,7 @@ def line_of(run: BoundaryRun, variance: float) -> Landmark:
 
 
 def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, variance: float) -> Landmark:
-    """Return the side that a run shows, with the sensor to its left; type NONE: no side, or none that is oblique.
+    """Return the side of a run at the left (``turn`` 1) or right (-1) boundary; type NONE: no side, or not oblique.
 
     The end towards the foot of the perpendicular is known unless hidden: there the echoes become a corner's. The other
     end is known where nothing else came nearer.

@@ -186,7 +186,7 @@ def _with_turn_prior(normal: NormalEquations, turn: float) -> NormalEquations:
 
 
 def solve(normal: NormalEquations, rc: float, rq: float, ra: float, rb: float) -> SegmentStep:
-    """Return the solution for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
+    """Return the step [m, rad] for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
     aa = max(normal.aa, LEAST_WEIGHT)
     bb = max(normal.bb, LEAST_WEIGHT)
     cc = normal.cc - normal.ca * normal.ca / aa - normal.cb * normal.cb / bb

@@ -163,7 +163,7 @@ def gear_of(work: PlanningWork, node: int) -> float:
 
 
 def lock_of(work: PlanningWork, node: int, problem: SearchProblem) -> float:
-    """Return the curvature with which a node was reached, over the largest."""
+    """Return the curvature with which a node was reached, over the largest: -1.0 to 1.0."""
     return work.node_curvature[node] / problem.car.max_curvature
 
 
@@ -201,7 +201,7 @@ def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProble
 def generate_successors(
     work: PlanningWork, node: int, pose: Pose, gear: float, lock: float, problem: SearchProblem
 ) -> None:
-    """Add the children of a node: at growing lengths along each arc, and where it is blocked."""
+    """Add a node's children along each arc; it was reached in ``gear`` (1.0, -1.0) with ``lock`` (-1.0 to 1.0)."""
     for number in range(10):
         direction = 2.0 * (number // 5) - 1.0
         turn = 0.5 * (number % 5 - 2)
@@ -253,7 +253,7 @@ def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) 
 
 
 def key_of(pose: Pose, distance: float, problem: SearchProblem) -> int:
-    """Return the number of the cell of ``pose``, by the gear it was reached in: the sign of ``distance``."""
+    """Return the number of the cell of ``pose``, by the gear it was reached in: the sign of ``distance`` [m]."""
     dx = pose.x - problem.root.x
     dy = pose.y - problem.root.y
     fine = problem.stage.resolution.refinement if dx * dx + dy * dy < REFINED_RADIUS * REFINED_RADIUS else 1.0

@@ -202,14 +202,14 @@ def move_segments(work: PlanningWork, start: int, count: int, by: int) -> None:
 
 
 def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int) -> None:
-    """Remember a vertex of the scene."""
+    """Set a vertex of the scene at (x, y) [m]."""
     work.corner_x[vertex] = x
     work.corner_y[vertex] = y
     work.corner_of[vertex] = polygon
 
 
 def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:
-    """Set a segment of the best path yet; of its room nothing is known."""
+    """Set a segment of the best path: ``distance`` [m], ``k`` [1/m]; its clearance is not measured yet."""
     work.best_length[segment] = distance
     work.best_curvature[segment] = k
     work.best_speed[segment] = 0.0

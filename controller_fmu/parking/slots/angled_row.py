@@ -127,7 +127,7 @@ def _row_into(vehicle: Pose, side: float, into: float) -> SlotRow:
 
 
 def oblique_sides(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> ObliqueSides:
-    """Return the mean direction of the sides oblique to the road beside ``vehicle``, by the variances of theirs."""
+    """Return the mean direction [rad] of the sides oblique to the road on one ``side`` (1, -1) of ``vehicle``."""
     sine = 0.0
     cosine = 0.0
     oblique = 0.0
@@ -291,7 +291,7 @@ def _side_log_likelihood(corners: tuple[RoadCorner, ...], line: CornerLine, firs
 
 
 def visible_log_likelihood(deviation: float) -> float:
-    """Return the log-probability that a side is at least as long as its visible part, so many sigma over the mean.
+    """Return the log-probability that a side is no shorter than seen, ``deviation`` [sigma] above the mean.
 
     Q(z) = exp(-0.717 z - 0.416 z2) / 2 for z >= 0.
     """

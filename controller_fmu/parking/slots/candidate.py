@@ -215,7 +215,7 @@ def _as_driveway(
 
 
 def log_likelihood_ratio(candidate: SlotCandidate) -> float:
-    """Return ln P(observations | parallel) - ln P(observations | perpendicular)."""
+    """Return ln P(observations | parallel) - ln P(observations | perpendicular) [1]."""
     ratio = 0.0
     for number in range(MAX_MEMBERS):
         if number < candidate.row.used:
@@ -236,7 +236,7 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
 
 
 def merging_penalty(member: RowMember) -> float:
-    """Return minus the log of the probability that two cars side by side, as far off as ``member``, seem one side."""
+    """Return -ln of the probability [1] that two cars side by side, as far off as ``member``, seem one side."""
     return MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
 
 

@@ -100,7 +100,7 @@ def _row_in_direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: Map
 
 
 def side_as_member(landmark: Landmark, frame: Pose, side: float, params: MappingParams) -> RowMember:
-    """Return a landmark as a member of a row in ``frame``; length 0 if it is no side along it on this side."""
+    """Return a landmark as a member of a row in ``frame``; length 0 if it is none on this ``side`` (1, -1)."""
     if landmark.type != LandmarkType.SEGMENT or not is_confirmed(landmark, params) or length_of(landmark) < MIN_SIDE:
         return RowMember()
     along = frame.heading if side < 0.0 else frame.heading + math.pi

@@ -11,7 +11,7 @@ COMMANDS = {
     "falsify": "falsification: search a study's ranges for violations of a requirement",
     "identify": "identify parameters of the vehicle from a log",
     "import": "import benchmark scenes as scenarios",
-    "list": "list scenarios, parameters, signals, controllers, requirements, runs",
+    "list": "list scenarios, parameters, signals, controllers, cars, requirements, studies, runs",
     "live": "write a page that runs the models in the browser",
     "migrate": "rewrite names of an earlier version in scenarios, studies and tests",
     "new": "create a controller, vehicle, scenario, study or CI workflow",

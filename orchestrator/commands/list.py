@@ -1,7 +1,9 @@
 """``apa list``: what is there to run, to set, to look at and to judge by."""
 
 import argparse
+import ast
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_n
 from orchestrator.inputs.scenario.requirements import read_requirements
 from orchestrator.inputs.text.console import console
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.yaml_file import read_mapping
 from orchestrator.studies.sweep.study.study_file import study_names
 
 EXAMPLES = """examples:
@@ -27,7 +30,7 @@ EXAMPLES = """examples:
   apa list runs                        runs in runs/, the latest first: time, scenario, changes, outcome
   apa list runs results --page         the same as a page, results/index.html
 """
-KINDS = ("scenarios", "parameters", "signals", "controllers", "requirements", "runs")
+KINDS = ("scenarios", "parameters", "signals", "controllers", "cars", "requirements", "studies", "runs")
 Rows = list[dict[str, Any]]
 
 
@@ -98,6 +101,33 @@ def _controllers(pattern: str | None) -> tuple[dict[str, str], Rows]:
     return heads, [row for row in rows if _has(pattern, row["name"], row["text"])]
 
 
+def _cars(pattern: str | None) -> tuple[dict[str, str], Rows]:
+    return _titles(car_names(), "cars", "car (--set car=NAME)", pattern)
+
+
+def _studies(pattern: str | None) -> tuple[dict[str, str], Rows]:
+    return _titles(sorted([*study_names(), *STUDIES]), "studies", "study (apa sweep NAME)", pattern)
+
+
+def _titles(names: list[str], folder: str, head: str, pattern: str | None) -> tuple[dict[str, str], Rows]:
+    """Return names with their titles, from a file of the library or the first line of the study's module."""
+    rows = []
+    for name in names:
+        file = LIBRARY / folder / f"{name}.yaml"
+        title = str(read_mapping(file).get("title", "")) if file.is_file() else _first_line(STUDIES[name])
+        if _has(pattern, name, title):
+            rows.append({"name": name, "title": title})
+    return {"name": head, "title": "title"}, rows
+
+
+def _first_line(module: str) -> str:
+    """Return the first line of a module's docstring, without its import."""
+    spec = find_spec(module)
+    assert spec is not None and spec.origin is not None
+    text = ast.get_docstring(ast.parse(Path(spec.origin).read_text(encoding="utf-8"))) or ""
+    return text.partition("\n")[0].rstrip(".")
+
+
 def _requirements(pattern: str | None) -> tuple[dict[str, str], Rows]:
     heads = {"set": "set", "id": "id", "signal": "signal", "required": "required", "source": "source"}
     rows = []
@@ -144,7 +174,9 @@ LISTS = {
     "parameters": _variables("parameter"),
     "signals": _variables("output", "input"),
     "controllers": _controllers,
+    "cars": _cars,
     "requirements": _requirements,
+    "studies": _studies,
     "runs": _runs,
 }
 RUNS = "runs"

@@ -277,6 +277,8 @@ def test_a_long_run_says_how_far_it_is_however_small_its_steps(
         (["signals", "vehicle.pose.*"], ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]),
         (["controllers", "fuzzy"], ["preview"]),
         (["scenarios", "case4-l"], ["guo2015-case4-left"]),
+        (["cars", "commonroad"], ["commonroad1", "commonroad2", "commonroad3"]),
+        (["studies", "guo2015"], ["guo2015-claim", "guo2015-speed-rate", "guo2015-steering", "guo2015-trial"]),
     ],
 )
 def test_list_of_what_can_be_named(arguments: list[str], names: list[str], capsys: pytest.CaptureFixture[str]) -> None:

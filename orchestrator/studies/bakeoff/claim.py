@@ -1,4 +1,4 @@
-"""NTBPTcwPT against plain NTBPT under driver speed errors: the claim of Guo 2015 as a success rate."""
+"""The claim of Guo 2015 as a success rate: path tracking with and without point tracking, under speed errors."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The bake-off as a study: controllers that know their slot, with the same slots, cars, bodies and disturbances."""
+"""Controllers that know their slot, in the same slots with the same cars, bodies and disturbances."""
 
 import math
 import statistics

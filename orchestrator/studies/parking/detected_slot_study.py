@@ -1,4 +1,4 @@
-"""Slots that have to be found, as a study, and what it prints."""
+"""Slot detection and parking at all angles: slot types, neighbours, walls, roads, search paths."""
 
 from pathlib import Path
 from typing import Any

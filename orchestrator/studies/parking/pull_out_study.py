@@ -1,4 +1,4 @@
-"""Slots that the assist comes out of, as a study, and what it prints."""
+"""Pulling out of parallel and perpendicular slots, to either side."""
 
 from collections import Counter
 from pathlib import Path

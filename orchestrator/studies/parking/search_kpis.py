@@ -1,4 +1,4 @@
-"""How well slots are found, as the field counts it: found, missed, false, of the right kind, how exact.
+"""Slot detection in figures: detected, missed, false, of the correct type, and how exact.
 
 Gaps that the car fits into and gaps that it does not, both kinds, over the speed of the search and the distance to the
 row; side, body, car and heading are drawn from the number of the case and the lot, as noise and odometry errors are.

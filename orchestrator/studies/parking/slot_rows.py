@@ -1,4 +1,4 @@
-"""Rows of slots at all angles as a study: cars, angles, tail or nose in, streets, ways to come.
+"""Known goals in rows of slots at all angles: cars, angles, tail or nose in, road widths, start poses.
 
 Every slot is between two parked cars on each side, a wall behind the row and one across the street, all of them on the
 map; the slot is given by its corners. Seeds, body and errors follow from the number of the case and ``lot``.

@@ -1,4 +1,4 @@
-"""The grid of the parking assist as a study: cars, slots, distances, headings, bodies, speeds."""
+"""The parking system over a grid of cars, slots, distances, headings, bodies and speeds."""
 
 import math
 from pathlib import Path

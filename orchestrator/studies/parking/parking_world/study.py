@@ -1,4 +1,4 @@
-"""``apa sweep parking-world``: parking in ordinary streets and car parks, and what it prints."""
+"""The parking system beside ordinary roads and in car parks, everything disturbed."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The parking system in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
+"""The parking system with slots, neighbours, sensors, actuators and road disturbed at once."""
 
 from collections import Counter
 from collections.abc import Mapping

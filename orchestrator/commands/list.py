@@ -123,7 +123,8 @@ def _titles(names: list[str], folder: str, head: str, pattern: str | None) -> tu
 def _first_line(module: str) -> str:
     """Return the first line of a module's docstring, without its import."""
     spec = find_spec(module)
-    assert spec is not None and spec.origin is not None
+    assert spec is not None
+    assert spec.origin is not None
     text = ast.get_docstring(ast.parse(Path(spec.origin).read_text(encoding="utf-8"))) or ""
     return text.partition("\n")[0].rstrip(".")
 

@@ -105,8 +105,8 @@ class PlannedPiece(NamedTuple):
     """A piece of the move being driven, seen in the world."""
 
     length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
-    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
-    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
+    start_curvature: Annotated[float, Signal("1/m", "curvature at its start, left positive")] = 0.0
+    end_curvature: Annotated[float, Signal("1/m", "curvature at its end, left positive")] = 0.0
 
 
 class Path(NamedTuple):

@@ -52,7 +52,7 @@ class LimitParams(NamedTuple):
         float, Signal("s", "maximum time for the driver to start moving", 0.1, 600.0, HOUSE)
     ] = 15.0
     stopping: Annotated[float, Signal("s", "maximum time for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
-    wrong_direction: Annotated[float, Signal("s", "maximum distance driven against the prompt", 0.1, 60.0, HOUSE)] = 1.5
+    wrong_direction: Annotated[float, Signal("s", "maximum time of driving against the prompt", 0.1, 60.0, HOUSE)] = 1.5
     pose_frozen: Annotated[float, Signal("s", "maximum time of driving without a change of pose", 0.1, 60.0, HOUSE)] = (
         0.5
     )

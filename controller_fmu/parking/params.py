@@ -20,13 +20,13 @@ HOUSE = "project default; the source states none"
 class PlanningParams(NamedTuple):
     """How the path is planned."""
 
-    margin: Annotated[float, Signal("m", "clearance of the path wished for", 0.0, 2.0, HOUSE)] = 0.15
+    margin: Annotated[float, Signal("m", "desired clearance of a path", 0.0, 2.0, HOUSE)] = 0.15
     min_margin: Annotated[float, Signal("m", "least clearance of a path that is driven", 0.0, 2.0, HOUSE)] = 0.03
-    curvature_fraction: Annotated[float, Signal("1", "planned over largest curvature", 0.3, 1.0, HOUSE)] = 0.95
-    steps_per_sample: Annotated[int, Signal("1", "steps of the search in one sample", 1, 1000, HOUSE)] = 10
-    max_steps: Annotated[int, Signal("1", "steps after which the search gives up", 1, 1_000_000, HOUSE)] = 60_000
-    max_manoeuvres: Annotated[int, Signal("1", "most manoeuvres where no slot is searched", 1, 100, HOUSE)] = 30
-    max_plans: Annotated[int, Signal("1", "most plans of one drive", 1, 100, HOUSE)] = 8
+    curvature_fraction: Annotated[float, Signal("1", "planned over largest possible curvature", 0.3, 1.0, HOUSE)] = 0.95
+    steps_per_sample: Annotated[int, Signal("1", "steps of the path search in one sample", 1, 1000, HOUSE)] = 10
+    max_steps: Annotated[int, Signal("1", "steps after which the path search fails", 1, 1_000_000, HOUSE)] = 60_000
+    max_manoeuvres: Annotated[int, Signal("1", "largest number of manoeuvres, no slot searched", 1, 100, HOUSE)] = 30
+    max_plans: Annotated[int, Signal("1", "largest number of plans in one drive", 1, 100, HOUSE)] = 8
 
 
 class SlotSearchParams(NamedTuple):
@@ -40,12 +40,12 @@ class SlotSearchParams(NamedTuple):
 class FinalPoseParams(NamedTuple):
     """How near to the goal the vehicle counts as parked."""
 
-    position: Annotated[float, Signal("m", "along and across the goal's heading", 0.001, 1.0, HOUSE)] = 0.06
-    heading: Annotated[float, Signal("rad", "heading; GB/T 41630 3 deg less two sigma of a row", 0.001, 0.5, HOUSE)] = (
+    position: Annotated[float, Signal("m", "largest longitudinal and lateral error", 0.001, 1.0, HOUSE)] = 0.06
+    heading: Annotated[float, Signal("rad", "heading error: 3 deg (GB/T) less 2 sigma of a row", 0.001, 0.5, HOUSE)] = (
         1.3 * pi / 180.0
     )
-    accepted: Annotated[float, Signal("m", "position, where no path leads nearer", 0.001, 1.0, HOUSE)] = 0.15
-    accepted_heading: Annotated[float, Signal("rad", "heading, the same", 0.001, 0.5, "GB/T 41630")] = 3.0 * pi / 180.0
+    accepted: Annotated[float, Signal("m", "position error where no path leads nearer", 0.001, 1.0, HOUSE)] = 0.15
+    accepted_heading: Annotated[float, Signal("rad", "and heading error", 0.001, 0.5, "GB/T 41630")] = 3.0 * pi / 180.0
 
 
 class ParkingSystem(IntEnum):

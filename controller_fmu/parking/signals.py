@@ -71,20 +71,20 @@ class ParkingAlarm(IntEnum):
 class SlotSignals(NamedTuple):
     """The slot found."""
 
-    type: Annotated[int, Signal("1", "how the vehicle stands in it", states=SlotType)] = SlotType.NONE
-    side: Annotated[int, Signal("1", "-1 right, 1 left of the road")] = 0
+    type: Annotated[int, Signal("1", "slot type", states=SlotType)] = SlotType.NONE
+    side: Annotated[int, Signal("1", "side of the road: -1 right, 1 left")] = 0
     ax: Annotated[float, Signal("m", "x of corner A, passed first")] = 0.0
     ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
     bx: Annotated[float, Signal("m", "x of corner B")] = 0.0
     by: Annotated[float, Signal("m", "y of corner B")] = 0.0
-    depth: Annotated[float, Signal("m", "behind the neighbours' fronts; 50: unknown", 0.0)] = 0.0
+    depth: Annotated[float, Signal("m", "depth behind the neighbours' fronts; 50: unknown", 0.0)] = 0.0
 
 
 class DrivenMove(NamedTuple):
     """The path up to the next change of direction."""
 
-    start: Annotated[Pose, Group("where the segment in hand begins")] = Pose()
-    direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
+    start: Annotated[Pose, Group("start of the current segment")] = Pose()
+    direction: Annotated[int, Signal("1", "direction: 1 forward, -1 in reverse, 0 none")] = 0
     pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * MOVE_SEGMENTS
 
 
@@ -97,18 +97,18 @@ class ParkingSignals(NamedTuple):
     plans: Annotated[int, Role.LOCAL, Signal("1", "plans begun so far", 0)] = 0
     margin: Annotated[float, Role.LOCAL, Signal("m", "clearance that the path keeps", 0.0)] = 0.0
     segments: Annotated[int, Role.LOCAL, Signal("1", "segments of the path", 0)] = 0
-    segment: Annotated[int, Role.LOCAL, Signal("1", "the one in hand, from 0", 0)] = 0
+    segment: Annotated[int, Role.LOCAL, Signal("1", "number of the current segment, from 0", 0)] = 0
     is_blocked: Annotated[bool, Role.LOCAL, Signal("1", "the collision monitor keeps the vehicle standing")] = False
     free_distance: Annotated[
-        float, Role.LOCAL, Signal("m", "free along the motion in hand; 100: more than looked at")
+        float, Role.LOCAL, Signal("m", "free distance along the present motion; 100: not limited")
     ] = 100.0
-    parking_time: Annotated[float, Role.LOCAL, Signal("s", "since the driver confirmed", 0.0)] = 0.0
+    parking_time: Annotated[float, Role.LOCAL, Signal("s", "time since the driver confirmed", 0.0)] = 0.0
     goal: Annotated[Pose, Role.LOCAL, Group("pose to park at")] = Pose()
     slot: Annotated[SlotSignals, Role.LOCAL] = SlotSignals()
     offered: tuple[SlotSignals, ...] = (SlotSignals(),) * MAX_OFFERS
     alarm: Annotated[int, Signal("1", "warning on the display", states=ParkingAlarm)] = ParkingAlarm.NONE
-    missing: Annotated[float, Role.LOCAL, Signal("m", "length that the last slot refused lacks", 0.0)] = 0.0
-    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, MAX_OFFERS)] = 0
+    missing: Annotated[float, Role.LOCAL, Signal("m", "length that the last rejected slot lacks", 0.0)] = 0.0
+    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: none", 0, MAX_OFFERS)] = 0
     move: Annotated[DrivenMove, Role.LOCAL] = DrivenMove()
 
 
@@ -130,7 +130,7 @@ class ParkingOutput(NamedTuple):
         int, Signal("1", "number of manoeuvres so far; the first reverse motion counts as one"), Role.LOCAL
     ] = 0
     reference: Annotated[Pose, Role.LOCAL, Group("reference point of the path beside the rear-axle midpoint")] = Pose()
-    lateral_error: Annotated[float, Signal("m", "left of the path"), Role.LOCAL] = 0.0
+    lateral_error: Annotated[float, Signal("m", "lateral error, left of the path positive"), Role.LOCAL] = 0.0
     heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
         0.0
     )

@@ -19,4 +19,4 @@ class MappingParams(NamedTuple):
     ] = 1.9e-6
     gate: Annotated[float, Signal("1", "innovation gate, chi-square of 1 degree of freedom", 1.0, 100.0, HOUSE)] = 9.0
     confirmations: Annotated[int, Signal("1", "updates that confirm a landmark", 1, 100, HOUSE)] = 5
-    contradictions: Annotated[int, Signal("1", "missed echoes in a row that delete it", 1, 100, HOUSE)] = 5
+    contradictions: Annotated[int, Signal("1", "missed echoes in a row that delete a landmark", 1, 100, HOUSE)] = 5

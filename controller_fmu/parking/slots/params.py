@@ -13,18 +13,18 @@ class SlotParams(NamedTuple):
     """What a slot must be, and where the vehicle stands in it."""
 
     wanted: Annotated[
-        int, Signal("1", "how to stand in it; none: as the row tells, tail in unless it leads on", states=SlotKind)
+        int, Signal("1", "requested slot type; none: by the row, tail in unless the slot leads on", states=SlotKind)
     ] = SlotKind.NONE
-    open_ended: Annotated[bool, Signal("1", "one neighbour will do, passed first, for a slot across the road")] = False
-    room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
-    room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
+    open_ended: Annotated[bool, Signal("1", "accepts a perpendicular slot with one neighbour, passed first")] = False
+    room_along: Annotated[float, Signal("m", "parallel slot: length beyond the vehicle's", 0.2, 10.0, HOUSE)] = 0.5
+    room_across: Annotated[float, Signal("m", "perpendicular slot: width beyond the vehicle's", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15
     confidence: Annotated[
         float,
-        Signal("1", "standard deviations of the slot by which a parked vehicle is within limits", 0.0, 6.0, HOUSE),
+        Signal("1", "standard deviations of the slot by which a parked pose is within limits", 0.0, 6.0, HOUSE),
     ] = 2.0
     distance_behind: Annotated[
-        float, Signal("m", "to the end of a slot: the monitor's distance, two standard deviations", 0.05, 2.0, HOUSE)
+        float, Signal("m", "distance to a slot's end: the monitor's and two standard deviations", 0.05, 2.0, HOUSE)
     ] = 0.08
     kerb_min: Annotated[
         float, Signal("m", "least distance to a kerb beside: 5 cm, and 5 cm for errors", 0.0, 1.0, GBT)
@@ -34,4 +34,4 @@ class SlotParams(NamedTuple):
     ] = 0.3
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
     distance: Annotated[float, Signal("m", "longest distance searched", 1.0, 1000.0, HOUSE)] = 60.0
-    confirm_time: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0
+    confirm_time: Annotated[float, Signal("s", "longest wait for the confirmation", 0.1, 3600.0, HOUSE)] = 60.0

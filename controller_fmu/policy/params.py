@@ -23,16 +23,16 @@ class KnownSlot(NamedTuple):
     x: Annotated[float, Signal("m", "x of its middle", -1e8, 1e8)] = 0.0
     y: Annotated[float, Signal("m", "y of its middle", -1e8, 1e8)] = 0.0
     heading: Annotated[float, Signal("rad", "direction of its length", -100.0, 100.0)] = 0.0
-    length: Annotated[float, Signal("m", "along its heading; 0: not known", 0.0, 1000.0)] = 0.0
-    width: Annotated[float, Signal("m", "across it", 0.0, 1000.0)] = 0.0
+    length: Annotated[float, Signal("m", "its length; 0: not known", 0.0, 1000.0)] = 0.0
+    width: Annotated[float, Signal("m", "its width", 0.0, 1000.0)] = 0.0
 
 
 class ToleranceParams(NamedTuple):
     """A car that stands within these is parked."""
 
-    longitudinal: Annotated[float, Signal("m", "along the target's heading", 0.0, 10.0, HOUSE)] = 0.3
-    lateral: Annotated[float, Signal("m", "across the target's heading", 0.0, 10.0, HOUSE)] = 0.1
-    heading: Annotated[float, Signal("rad", "of its heading", 0.0, 1.5, HOUSE)] = 2.5 * pi / 180.0
+    longitudinal: Annotated[float, Signal("m", "longitudinal error at which it is parked", 0.0, 10.0, HOUSE)] = 0.3
+    lateral: Annotated[float, Signal("m", "lateral error at which it is parked", 0.0, 10.0, HOUSE)] = 0.1
+    heading: Annotated[float, Signal("rad", "heading error at which it is parked", 0.0, 1.5, HOUSE)] = 2.5 * pi / 180.0
     standstill: Annotated[float, Signal("m/s", "speed below which it stands", 1e-6, 0.5, HOUSE)] = 0.005
 
 

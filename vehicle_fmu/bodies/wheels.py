@@ -25,7 +25,9 @@ class HubParams(NamedTuple):
     """Size and inertia of a wheel."""
 
     radius: Annotated[float, Signal("m", "rolling radius", 0.05, 2.0, COMMONROAD + ", R_w")] = 0.344
-    inertia: Annotated[float, Signal("kg.m2", "about its axle", 0.01, 100.0, COMMONROAD + ", I_y_w")] = 1.7
+    inertia: Annotated[
+        float, Signal("kg.m2", "moment of inertia of the wheel about its axle", 0.01, 100.0, COMMONROAD + ", I_y_w")
+    ] = 1.7
     traction: Annotated[
         float, Signal("1", "slip from which traction control takes the drive back; 100: none", 0.001, 100.0, CHOSEN)
     ] = 0.05

@@ -9,9 +9,13 @@ from typing import Any
 
 import pytest
 
+from controller_fmu import SYSTEM_MODELS
 from fmus.native.library_cache import C_FILES
 from fmus.native.platforms import LINUX
 from fmus.native.sources import fmu_sources, unit_name
+from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.presentation.export.system_of import one_model
+from tests.fmi.built import native_fmu_of
 from tests.fmi.elf import dynamic
 from tests.fmi.raw import OK, Library
 from tests.fmi.raw3 import Library3
@@ -155,6 +159,31 @@ def test_no_random_call_of_fmi_3_crashes(host3: Any, fmi3_fmus: Any, any_model: 
     assert calls == 30_000
     assert 0.2 < refused / calls < 0.8
     assert messages > refused / 3
+    assert functions == len(dynamic(library.file.read_bytes())[2]), "all that the library exports"
+
+
+OTHERS = {f"system {system.name.lower()}": lambda system=system: SYSTEM_MODELS[system] for system in SYSTEM_MODELS}
+OTHERS |= {
+    f"container {name}": lambda name=name: one_model(load_scenario(name, []))
+    for name in ("guo2015-case4", "apa-parallel")
+}
+"""FMUs that users build beside those of :data:`ALL_MODELS`: of one system, and of a scenario as a whole."""
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", OTHERS)
+def test_no_random_call_of_other_fmus_crashes(host: Any, host3: Any, name: str, fmi: int, tmp_path: Path) -> None:
+    path = native_fmu_of(OTHERS[name](), fmi)
+    if fmi == 2:
+        library: Any = Library(path, tmp_path)
+        text = run(host, "fuzz", library.file, library.description.guid, 1, 20_000, timeout=300)
+    else:
+        library = Library3(path, tmp_path)
+        text = run(host3, library.file, library.description.guid, 1, 30_000, timeout=300)
+    calls, refused, _, functions = (int(word.split()[0]) for word in text.split(", "))
+    assert calls >= 20_000
+    assert 0.2 < refused / calls < 0.8
     assert functions == len(dynamic(library.file.read_bytes())[2]), "all that the library exports"
 
 

@@ -14,21 +14,37 @@ from fmus.native.fmu import PAGE
 from fmus.native.platforms import LINUX
 from fmus.native.sources import fmu_sources, unit_name
 from tests.docs.scripts import script
-from tests.fmi.test_native_host import STACK
+from tests.fmi.test_native_host import OTHERS, STACK
 
 BOUND = STACK // 2
 """Bytes of stack that a call may take: the other half is for what the importer does, and for its logger."""
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
+needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
+
+
+@needs_gcc
 @pytest.mark.parametrize("fmi", [pytest.param(2, marks=pytest.mark.release), 3])
 def test_no_chain_of_calls_takes_half_of_a_small_stack(any_model: Any, fmi: int, tmp_path: Path) -> None:
-    for name, text in fmu_sources(any_model, "{token}", fmi).items():
-        (tmp_path / name).write_text(text)
+    check_stack(any_model, fmi, tmp_path)
+
+
+@needs_gcc
+@pytest.mark.release
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", OTHERS)
+def test_no_chain_of_calls_of_other_fmus_does(name: str, fmi: int, tmp_path: Path) -> None:
+    check_stack(OTHERS[name](), fmi, tmp_path)
+
+
+def check_stack(model: Any, fmi: int, folder: Path) -> None:
+    """Compile an FMU's sources and look at each chain of calls that begins in a function of FMI."""
+    for name, text in fmu_sources(model, "{token}", fmi).items():
+        (folder / name).write_text(text)
     options = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fcallgraph-info=su"]
-    command = ["gcc", *options, f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-c", unit_name(any_model, fmi), "-o", "x.o"]
-    subprocess.run(command, check=True, cwd=tmp_path)
-    found = script("embedded").deepest((tmp_path / "x.ci").read_text())
+    command = ["gcc", *options, f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-c", unit_name(model, fmi), "-o", "x.o"]
+    subprocess.run(command, check=True, cwd=folder)
+    found = script("embedded").deepest((folder / "x.ci").read_text())
     public = {name: size for name, size in found.items() if name.startswith(f"fmi{fmi}")}
     assert len(public) == {2: 34, 3: 75}[fmi]
     assert public[f"fmi{fmi}DoStep"] > 100, "the step is in the graph"

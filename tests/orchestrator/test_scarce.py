@@ -1,11 +1,14 @@
 """Little memory, few descriptors, a closed stream, a folder that is gone: one line and exit code 2, or the result."""
 
+import errno
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from orchestrator.inputs.text.failures import place_of
 
 resource = pytest.importorskip("resource", reason="limits of this kind are POSIX's")
 RUN = ["run", "guo2015-case4", "--fmus", "none", "--no-page"]
@@ -71,8 +74,28 @@ def test_an_export_to_a_disk_that_is_full_ends_in_one_line(command: str, tmp_pat
     done = ran(words, tmp_path, {"RLIMIT_FSIZE": 8192})
     assert done.returncode == 2, done.stderr
     assert done.stderr.count("\n") == 1
-    assert "File too large" in done.stderr
+    assert "larger than is allowed" in done.stderr
     assert sorted(out.iterdir()) == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="no folder can be made below a device")
+def test_a_figure_needs_no_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """matplotlib says in two lines that its folder cannot be made."""
+    monkeypatch.setenv("HOME", "/dev/null")
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME", "MPLCONFIGDIR"):
+        monkeypatch.delenv(name, raising=False)
+    done = ran(
+        ["run", "guo2015-case4", "--fmus", "none", "--set", "stop_time=0.2", "--out", str(tmp_path / "out")],
+        tmp_path,
+        {},
+    )
+    assert done.returncode in (0, 1), done.stderr
+    assert (tmp_path / "out" / "overview.png").exists()
+    assert "atplotlib" not in done.stderr
+
+
+def test_no_more_processes_are_said_with_the_limit() -> None:
+    assert "ulimit -u" in place_of(BlockingIOError(errno.EAGAIN, "Resource temporarily unavailable"))
 
 
 def test_a_folder_that_is_gone_is_named(tmp_path: Path) -> None:

@@ -34,6 +34,9 @@ WORDS = {
     errno.EISDIR: "is a folder, expected a file",
     errno.ENAMETOOLONG: "this name is too long",
     errno.ENOENT: "there is no such file or folder",
+    errno.EAGAIN: "no more processes or threads are allowed (ulimit -u shows the limit)",
+    errno.ENOMEM: SCARCE_RESOURCES,
+    errno.EFBIG: "this file would be larger than is allowed (ulimit -f shows the limit)",
     errno.EMFILE: "too many open files (ulimit -n shows the limit)",
     errno.ELOOP: "too many levels of symbolic links (a cycle)",
 }

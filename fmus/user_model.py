@@ -72,7 +72,7 @@ def lines_of(model: Model) -> Iterator[None]:
         yield
     except UnsupportedError as error:
         raise BadModel(str(error)) from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         file = Path(str(model.package.__file__))
         place = _place(error, file.parent if file.name == "__init__.py" else file)
         if place:
@@ -102,7 +102,7 @@ def _module(path: Path) -> ModuleType:
     _loaded.add(name)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise BadModel(_read_error(error, path)) from error
     return module
@@ -120,7 +120,7 @@ def _check_name(name: str, file: Path) -> None:
         raise BadModel(f"{file}: there is another Python module called {name}: rename the file")
 
 
-def _read_error(error: Exception, path: Path) -> str:
+def _read_error(error: BaseException, path: Path) -> str:
     """Return one line about what went wrong while a model was read."""
     if isinstance(error, SyntaxError):
         return f"{Path(error.filename or path).name}:{error.lineno}: {error.msg}"
@@ -133,7 +133,7 @@ def _read_error(error: Exception, path: Path) -> str:
     return f"{place}: {type(error).__name__}: {' '.join(str(error).split())}"
 
 
-def _place(error: Exception, path: Path) -> str:
+def _place(error: BaseException, path: Path) -> str:
     """Return ``file:line`` of the last line below ``path`` that ran, or an empty string."""
     here = path.resolve()
     for frame in reversed(traceback.extract_tb(error.__traceback__)):

@@ -134,7 +134,12 @@ def _command(words: list[str]) -> int:
 def _run(words: list[str]) -> int:
     parsed = parser().parse_args(words, argparse.Namespace(words=words))
     with _as_asked(parsed):
-        return int(parsed.run(parsed))
+        try:
+            return int(parsed.run(parsed))
+        except SystemExit as error:
+            from orchestrator.inputs.text.errors import BadInput
+
+            raise BadInput(f"code of a model, or of a study, ended the program (SystemExit: {error.code})") from error
 
 
 def _tolerant_streams() -> None:

@@ -67,6 +67,15 @@ def wrong(what: Any) -> Any:
     return text, number, text.splitlines()[number - 1].strip()
 
 
+@pytest.mark.parametrize("code", [0, 5])
+def test_a_file_that_ends_the_program_is_no_success(
+    code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found, said = answer(tmp_path, f"import sys\n\nsys.exit({code})\n", capsys)
+    assert (found, said.count("\n")) == (2, 1)
+    assert f"tank.py:3: SystemExit: {code}" in said
+
+
 @pytest.mark.parametrize("what", MISTAKES)
 def test_a_mistake_is_answered_in_one_line(what: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text, _, _ = wrong(what)

@@ -278,3 +278,14 @@ def test_folders_nested_deeper_than_the_recursion_limit_are_removed(tmp_path: Pa
     finally:
         sys.setrecursionlimit(limit)
     assert not top.exists()
+
+
+def test_code_that_leaves_within_a_command_is_no_success(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def leave(_: object) -> int:
+        raise SystemExit(0)
+
+    monkeypatch.setattr("orchestrator.commands.list.run", leave)
+    assert main(["list"]) == 2
+    assert capsys.readouterr().err == "apa: code of a model, or of a study, ended the program (SystemExit: 0)\n"

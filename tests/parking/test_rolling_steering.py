@@ -17,11 +17,11 @@ from controller_fmu.parking.following.rolling_steering import (
     reference_at,
     standstill_before,
     transition_after,
+    transition_length,
     upcoming_stop,
 )
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.planning.curvature_transition import lateral_offset_after, transition_length
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import PathSegment, PlannedPath
 from controller_fmu.parking.signals import ParkingSystemInput
@@ -35,11 +35,11 @@ MOST = ROOMY_FACTOR * CONTEXT.drive.rolling_offset
 curvature = st.floats(-0.3, 0.3)
 
 
-def path_of(*pieces: tuple[float, float], room: float = 0.1) -> PlannedPath:
-    """Return a path of (way, curvature) with 15 cm of margin."""
+def path_of(*pieces: tuple[float, float], margin: float = 0.15, overrun: float = 0.1) -> PlannedPath:
+    """Return a path of (way, curvature) with a margin [m], free so far [m] beyond its cusps."""
     found = PlannedPath()
-    made = tuple(PathSegment(way, k, room) for way, k in pieces)
-    return found._replace(used=len(made), margin=0.15, segments=made + found.segments[len(made) :])
+    made = tuple(PathSegment(way, k, overrun=overrun) for way, k in pieces)
+    return found._replace(used=len(made), margin=margin, segments=made + found.segments[len(made) :])
 
 
 def driven(path: PlannedPath) -> list[tuple[float, float, float]]:
@@ -163,32 +163,25 @@ def test_a_car_that_turns_its_wheel_about_a_cusp_is_on_its_path_behind_it(
     assert abs(without[0]) < 1e-3, "at rest nothing is lost"
 
 
-def without_room(path: PlannedPath) -> PlannedPath:
-    """Return the path with nothing free about it but its margin."""
-    return path._replace(segments=tuple(segment._replace(clearance=0.0) for segment in path.segments))
-
-
-def test_where_there_is_room_the_wheel_turns_longer_on_the_move() -> None:
+def test_the_wider_the_margin_the_longer_the_wheel_turns_on_the_move() -> None:
     path = path_of((1.5, 0.3), (-2.0, -0.3))
-    wide, narrow = standstill_before(path, 1, CONTEXT), standstill_before(without_room(path), 1, CONTEXT)
-    assert narrow.overrun <= 0.01 < 0.05 < wide.overrun <= path.segments[1].clearance
+    tight = path_of((1.5, 0.3), (-2.0, -0.3), margin=0.06, overrun=0.0)
+    wide, narrow = standstill_before(path, 1, CONTEXT), standstill_before(tight, 1, CONTEXT)
+    assert narrow.overrun <= 0.01 < 0.05 < wide.overrun <= path.segments[1].overrun
     assert wide.before + wide.after > 1.5 * (narrow.before + narrow.after)
-    assert standstill_before(path, 0, CONTEXT).after > 1.2 * standstill_before(without_room(path), 0, CONTEXT).after
+    assert standstill_before(path, 0, CONTEXT).after > 1.1 * standstill_before(tight, 0, CONTEXT).after
     onto = path_of((2.0, 0.0), (2.0, 0.3))
-    tight = path_of((2.0, 0.0), (2.0, 0.3), room=0.01)
-    assert transition_after(onto, 0, CONTEXT).transition > 1.1 * transition_after(tight, 0, CONTEXT).transition > 0.5
-    assert transition_after(without_room(onto), 0, CONTEXT).transition == 0.0, "it stands"
+    near = path_of((2.0, 0.0), (2.0, 0.3), margin=0.05)
+    assert transition_after(onto, 0, CONTEXT).transition > 1.1 * transition_after(near, 0, CONTEXT).transition > 0.5
+    assert transition_after(onto._replace(margin=0.0), 0, CONTEXT).transition == 0.0, "it stands"
     stands = path_of((1.5, 0.3), (0.02, -0.3))
     assert transition_after(stands, 0, CONTEXT).transition == 0.0
-    assert standstill_before(stands, 1, CONTEXT) == standstill_before(without_room(stands), 1, CONTEXT), (
-        "nothing is got back"
-    )
 
 
 def test_without_room_a_jump_has_no_ramp_and_no_jump_has_the_longest() -> None:
     assert transition_length(0.0, 0.2, 3.0) == 0.0
     assert transition_length(0.0, 0.0, 3.0) == transition_length(0.02, 0.0, 3.0) == 3.0
-    assert lateral_offset_after(0.2, transition_length(0.02, -0.2, 3.0)) == pytest.approx(0.02)
+    assert 0.2 * transition_length(0.02, -0.2, 3.0) ** 2 / 24.0 == pytest.approx(0.02)
 
 
 def test_a_last_piece_of_millimetres_is_left_out() -> None:

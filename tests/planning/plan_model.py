@@ -41,7 +41,7 @@ def initialize(params: Params) -> tuple[State, Output]:
 def step(store: PlanningWork, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
     count = state.count + params.each
     search_until(store, ObstacleMap(), params.scene.corners, params.request, count)
-    return State(count), Output(search_status(store), path_of_plan(store))
+    return State(count), Output(search_status(store), path_of_plan(store, params.request))
 
 
 MODEL = Model(

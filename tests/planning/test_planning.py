@@ -2,15 +2,16 @@
 
 import math
 import random
-from itertools import accumulate, pairwise
 
 import pytest
 from shapely.geometry import LineString
 
+from controller_fmu.parking.following.params import FollowingParams
+from controller_fmu.parking.following.rolling_steering import MARGIN_FRACTION, ROOMY_FACTOR
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
-from controller_fmu.parking.planning.clearance_margin import EXAMINED_DISTANCE, MARGIN_LEFT, MAX_OFFSET, MAX_OVERRUN
+from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.reeds_shepp import list_words
@@ -75,34 +76,26 @@ def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
     assert least_clearance(poses, BOXES, CAR) >= 0.1 - 1e-3
 
 
-def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
+def test_steering_while_rolling_leaves_the_margin_at_cusps_and_most_of_it_between() -> None:
     request = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     store = plan(request, scene_of(BOXES))
-    path = path_of_plan(store)
+    path = path_of_plan(store, request)
     pieces = [(piece.distance, piece.curvature) for piece in path.segments[: path.used]]
-    poses, begin = poses_along(request.start, pieces), request.start
-    gone = [math.dist(one[:2], other[:2]) for one, other in pairwise(poses)]
-    places, at = [0.0, *accumulate(gone)], 0.0
-    cusps = joints = 0
+    begin, cusps, joints = request.start, 0, 0
+    offset = min(FollowingParams().rolling_offset, MARGIN_FRACTION * path.margin)
     for number, piece in enumerate(path.segments[: path.used]):
         way, k = pieces[number - 1]
         if number > 0 and way * piece.distance < 0.0:
-            on = [pose_along_arc(begin, math.copysign(share * piece.clearance, way), k) for share in (0.25, 0.5, 1.0)]
+            on = [pose_along_arc(begin, math.copysign(share * piece.overrun, way), k) for share in (0.25, 0.5, 1.0)]
             assert least_clearance(on, BOXES, CAR) >= path.margin - 1e-3
-            farther = pose_along_arc(begin, math.copysign(piece.clearance + 0.02, way), k)
-            assert piece.clearance == MAX_OVERRUN or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
+            farther = pose_along_arc(begin, math.copysign(piece.overrun + 0.02, way), k)
+            assert piece.overrun == MAX_CLEARANCE or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
             cusps += 1
         elif number > 0 and piece.curvature != k:
-            assert 0.0 <= piece.clearance <= MAX_OFFSET
-            if piece.clearance > 0.0:
-                ramp = ramp_poses(begin, pieces[number - 1 : number + 1], piece.clearance)
-                assert least_clearance(ramp, BOXES, CAR) >= MARGIN_LEFT * path.margin - 0.01
-                joints += 1
-        elif number == 0:
-            near = [pose for pose, place in zip(poses, places, strict=True) if abs(place - at) <= EXAMINED_DISTANCE]
-            least = min(1.0, least_clearance(near, BOXES, CAR))
-            assert piece.clearance == pytest.approx(max(0.0, least - path.margin), abs=0.03)
-        at, begin = at + abs(piece.distance), pose_along_arc(begin, piece.distance, piece.curvature)
+            ramp = ramp_poses(begin, pieces[number - 1 : number + 1], ROOMY_FACTOR * offset)
+            assert least_clearance(ramp, BOXES, CAR) >= 0.7 * path.margin
+            joints += 1
+        begin = pose_along_arc(begin, piece.distance, piece.curvature)
     assert cusps > 0 < joints
 
 

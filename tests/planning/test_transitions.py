@@ -29,13 +29,14 @@ STARTS = [Pose(1.0, 3.0, 0.0), Pose(1.0, 3.0, 0.2)]
 
 
 def path_with(start: Pose, polygons: list[list[tuple[float, float]]], dynamics: DrivingDynamics) -> PlannedPath:
-    store = plan(request_of(start, GOAL, 0.1, dynamics), scene_of(polygons))
+    request = request_of(start, GOAL, 0.1, dynamics)
+    store = plan(request, scene_of(polygons))
     assert store.counts[PlanCount.STATUS] == PlanningStatus.PLANNED
     poses = poses_along(start, kept(store))
     assert poses[-1][:2] == pytest.approx(GOAL[:2], abs=1e-4)
     assert math.remainder(poses[-1].heading - GOAL.heading, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-4)
     assert least_clearance(poses, polygons, CAR) >= MARGIN_FRACTION * store.values[PlanValue.BEST_PATH_MARGIN] - 1e-3
-    return path_of_plan(store)
+    return path_of_plan(store, request)
 
 
 @pytest.mark.parametrize("start", STARTS)

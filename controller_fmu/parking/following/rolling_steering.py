@@ -1,12 +1,12 @@
-"""Steering while rolling from one segment of a path to the next, where there is room for the offset that it causes.
+"""Steering while rolling from one segment of a path to the next, as far off the path as its margin allows.
 
 Where the curvature jumps by dk it changes linearly over a transition of length r instead, half of it before the joint.
-The heading behind it is the path's, and the vehicle is beside it by dk r2 / 24. Transitions may overlap: their offsets
-add up. They end where the gear changes.
+The heading behind it is the path's, and the vehicle is beside it by dk r2 / 24. Half way along it the vehicle is off
+its direction by dk r / 8. Transitions may overlap: their offsets add up. They end where the gear changes.
 
 About a standstill, too, the wheel turns while the vehicle still rolls, or rolls again: it begins a time before and goes
 on a time behind. The curvature is off by then, which costs heading. Where the gear changes the vehicle gets it back by
-going on by that heading over dk before it turns round, as far as the path's clearance allows.
+going on by that heading over dk before it turns round, as far as that is free.
 
 On a transition the steering turns by dphi per metre, which limits the speed. Where one alone asks for less than
 ``MIN_ROLLING_SPEED`` the vehicle stops, and the wheel turns at standstill.
@@ -16,24 +16,25 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.following.params import RATE_FRACTION, START_ACCELERATION, FollowingContext
-from controller_fmu.parking.planning.clearance_margin import CLEARANCE_FRACTION, MARGIN_FRACTION
-from controller_fmu.parking.planning.curvature_transition import SAME_CURVATURE, transition_length, transition_state
 from controller_fmu.parking.planning.gear_segments import GearSegment, distance_before, gear_segment
 from controller_fmu.parking.planning.planner import PathSegment, PlannedPath
+from controller_fmu.parking.planning.problem import SAME_CURVATURE
 from modelkit.maths import sign
 
 MIN_ROLLING_SPEED = 0.12
 """Slower [m/s] than this it is quicker to stop and turn the wheel at standstill."""
+MARGIN_FRACTION = 0.14
+"""The vehicle leaves its path by at most ``drive.rolling_offset``, and by this fraction of the path's margin, ..."""
 ROOMY_FACTOR = 1.5
-"""A transition takes the vehicle off by at most ``drive.rolling_offset`` times this, where the planner finds room."""
+"""... times this on a transition in one gear, ..."""
 JUST_BEHIND = 1e-6
 """So far [m] behind its edge a transition has begun, or ended, in spite of rounding."""
 STANDSTILL_FRACTION = 0.5
-"""Share of what transitions may take that turning about a standstill may, if there is no room beyond it."""
+"""... and times this about a standstill."""
 OVERRUN_FACTOR = 5.0
-"""A car may go farther before it turns round by so many times ``drive.rolling_offset``, where there is room."""
+"""A vehicle may go farther before it turns round by so many times ``drive.rolling_offset``, where that is free."""
 START_FACTOR = 2.0
-"""And by so many times that it might have to as it sets out on its path, which tracking takes back."""
+"""As it sets out it may leave its path by so many times that, which tracking takes back."""
 MIN_MARGIN = 0.05
 """Where the plan leaves less clearance [m] the steering wheel turns at rest."""
 SETTLING_TIME = 0.3
@@ -84,6 +85,26 @@ class UpcomingStop(NamedTuple):
     """That standstill."""
 
 
+def transition_length(off: float, jump: float, longest: float) -> float:
+    """Return the length [m], at most ``longest``, of a transition by ``jump`` [1/m] that ends ``off`` [m] aside."""
+    return longest if abs(jump) * longest * longest <= 24.0 * off else math.sqrt(24.0 * off / abs(jump))
+
+
+def transition_state(jump: float, length: float, past: float, is_past: bool) -> PathReference:
+    """Return where a vehicle is on a transition, ``past`` [m] behind the joint; ``is_past``: on the path behind.
+
+    Its heading is that of a vehicle that drives forward.
+    """
+    on = past + 0.5 * length
+    share = on / length
+    path_turned = 1.0 if is_past else 0.0
+    return PathReference(
+        jump * (share - path_turned),
+        jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past),
+        jump * (0.5 * on * share - path_turned * past),
+    )
+
+
 def transition_after(path: PlannedPath, segment: int, context: FollowingContext) -> CurvatureJoint:
     """Return the joint at the end of ``segment``."""
     whole = gear_segment(path, segment)
@@ -99,7 +120,7 @@ def _transition_at(
     if is_transition(path, segment + 1):
         length = min(abs(path.segments[segment].distance), abs(path.segments[segment + 1].distance))
         return CurvatureJoint(length, path.segments[segment + 1].curvature - path.segments[segment].curvature)
-    offset = _offset_before(path, segment + 1, context)
+    offset = ROOMY_FACTOR * _max_offset(path, context)
     if offset <= 0.0:
         return CurvatureJoint()
     longest = 2.0 * min(
@@ -160,7 +181,7 @@ def reference_at(path: PlannedPath, segment: int, left: float, context: Followin
         if abs(past) < 0.5 * joint.transition:
             more = transition_state(joint.jump, joint.transition, past, number < segment)
             curvature += more.curvature
-            heading += more.turned
+            heading += more.heading
             lateral += more.lateral
     k = path.segments[segment].curvature
     return PathReference(curvature * (1.0 + k * lateral), lateral, sign(path.segments[segment].distance) * heading)
@@ -294,20 +315,14 @@ def steers_for_next(ahead: UpcomingStop, context: FollowingContext) -> bool:
 
 
 def _max_offset(path: PlannedPath, context: FollowingContext) -> float:
-    """Return how far [m] off its path the car may come by turning its steering wheel on the move."""
+    """Return how far [m] off its path the vehicle may come by turning its steering wheel on the move."""
     return min(context.drive.rolling_offset, MARGIN_FRACTION * path.margin)
-
-
-def _offset_before(path: PlannedPath, segment: int, context: FollowingContext) -> float:
-    """Return the same where ``segment`` begins in the gear of the one before: more where there is room."""
-    return min(ROOMY_FACTOR * context.drive.rolling_offset, path.segments[segment].clearance)
 
 
 def _overrun_before(path: PlannedPath, segment: int, context: FollowingContext) -> float:
     """Return how far [m] the car may go on before ``segment`` begins, for turning its wheel on the move."""
-    least = STANDSTILL_FRACTION * _max_offset(path, context)
+    offset = _max_offset(path, context)
     if segment == 0:
-        return min(START_FACTOR * context.drive.rolling_offset, least + CLEARANCE_FRACTION * path.segments[0].clearance)
-    if segment >= path.used or path.segments[segment - 1].distance * path.segments[segment].distance > 0.0:
-        return least
-    return max(least, min(OVERRUN_FACTOR * context.drive.rolling_offset, path.segments[segment].clearance))
+        return START_FACTOR * offset
+    overrun = path.segments[segment].overrun if segment < path.used else 0.0
+    return max(STANDSTILL_FRACTION * offset, min(OVERRUN_FACTOR * context.drive.rolling_offset, overrun))

@@ -7,9 +7,9 @@ another request or of later steps, all is done anew from the first step.
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.planning.clearance_margin import measure_clearance
-from controller_fmu.parking.planning.collision import clearance
+from controller_fmu.parking.planning.collision import MAX_CLEARANCE, clearance, free_distance
 from controller_fmu.parking.planning.grids import (
     UNREACHABLE_COST,
     add_edges,
@@ -40,6 +40,8 @@ from controller_fmu.parking.planning.work import (
     set_segment,
     set_vertex,
 )
+from modelkit.maths import sign
+from modelkit.vocabulary import Pose
 
 
 class PlanningPhase(IntEnum):
@@ -50,8 +52,7 @@ class PlanningPhase(IntEnum):
     SEARCH = 2
     SMOOTH = 3
     ADD_TRANSITIONS = 4
-    MEASURE_CLEARANCE = 5
-    FINISHED = 6
+    FINISHED = 5
 
 
 class PlanningStatus(IntEnum):
@@ -77,11 +78,10 @@ class PathSegment(NamedTuple):
     """[m], reverse negative."""
     curvature: float = 0.0
     """Curvature [1/m]."""
-    clearance: float = 0.0
-    """At the path's start: what is free beyond the margin [m]. Where the gear changes: how far the segment before may
-    go on. Else: how far beside the path steering while rolling may take the car."""
     speed: float = 0.0
     """Largest speed [m/s] on a transition, where the wheel turns; 0: it is not one."""
+    overrun: float = 0.0
+    """How far [m] the segment before may go on where the gear changes."""
 
 
 class PlannedPath(NamedTuple):
@@ -165,7 +165,7 @@ def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Verte
 
 
 def step(work: PlanningWork, request: PlanningRequest) -> None:
-    """Do one bounded step: set up a scene, begin a search, expand a node, smooth a span, or examine a joint."""
+    """Do one bounded step: set up a scene, begin a search, expand a node, smooth a span, or try a transition."""
     work.counts[PlanCount.COUNT] = work.counts[PlanCount.COUNT] + 1
     phase = work.counts[PlanCount.PHASE]
     problem = search_problem(work, request)
@@ -188,33 +188,27 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     elif phase == PlanningPhase.ADD_TRANSITIONS:
         more = try_transitions(work, request, problem, MAX_SEGMENTS)
         if not more:
-            work.counts[PlanCount.MEASURED_SEGMENTS] = 0
-            work.counts[PlanCount.PHASE] = PlanningPhase.MEASURE_CLEARANCE
-    elif phase == PlanningPhase.MEASURE_CLEARANCE:
-        more = measure_clearance(work, request, problem)
-        if not more:
             _finish(work, PlanningStatus.PLANNED)
 
 
-def path_of_plan(work: PlanningWork) -> PlannedPath:
-    """Return the path that was found."""
-    segments = tuple(
-        _segment(work, number) if number < work.counts[PlanCount.BEST_SEGMENT_COUNT] else PathSegment()
-        for number in range(MAX_SEGMENTS)
-    )
-    return PlannedPath(
-        work.counts[PlanCount.BEST_SEGMENT_COUNT],
-        work.values[PlanValue.BEST_PATH_MARGIN],
-        work.values[PlanValue.BEST_PATH_COST],
-        segments,
-    )
-
-
-def _segment(work: PlanningWork, number: int) -> PathSegment:
-    """Return a segment of the path that was found."""
-    return PathSegment(
-        work.best_length[number], work.best_curvature[number], work.best_clearance[number], work.best_speed[number]
-    )
+def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
+    """Return the path that was found, and how far the vehicle may go on where it changes gear, at its margin."""
+    count = work.counts[PlanCount.BEST_SEGMENT_COUNT]
+    margin = work.values[PlanValue.BEST_PATH_MARGIN]
+    problem = search_problem(work, request)._replace(margin=margin)
+    pose = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
+    before = PathSegment()
+    segments: tuple[PathSegment, ...] = (PathSegment(),) * MAX_SEGMENTS
+    for number in range(MAX_SEGMENTS):
+        if number < count:
+            distance = work.best_length[number]
+            overrun = 0.0
+            if before.distance * distance < 0.0:
+                overrun = free_distance(work, pose, sign(before.distance), before.curvature, MAX_CLEARANCE, problem)
+            before = PathSegment(distance, work.best_curvature[number], work.best_speed[number], overrun)
+            segments = segments[:number] + (before,) + segments[number + 1 :]
+            pose = pose_along_arc(pose, distance, before.curvature)
+    return PlannedPath(count, margin, work.values[PlanValue.BEST_PATH_COST], segments)
 
 
 def _numbers(request: PlanningRequest) -> tuple[float, ...]:
@@ -327,11 +321,10 @@ def _next_stage(work: PlanningWork, request: PlanningRequest) -> None:
     best = work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0
     last = stage >= len(SEARCH_SCHEDULE)
     if best and (last or not SEARCH_SCHEDULE[stage].always):
-        work.counts[PlanCount.MEASURED_SEGMENTS] = 0
+        work.counts[PlanCount.PHASE] = PlanningPhase.ADD_TRANSITIONS
         has_transitions = begin_transitions(work, request, MAX_SEGMENTS)
-        work.counts[PlanCount.PHASE] = (
-            PlanningPhase.ADD_TRANSITIONS if has_transitions else PlanningPhase.MEASURE_CLEARANCE
-        )
+        if not has_transitions:
+            _finish(work, PlanningStatus.PLANNED)
     elif last:
         _finish(work, PlanningStatus.NO_PATH)
     else:

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
-from controller_fmu.parking.planning.curvature_transition import SAME_CURVATURE
-from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest, SearchProblem
+from controller_fmu.parking.planning.problem import SAME_CURVATURE, DrivingDynamics, PlanningRequest, SearchProblem
 from controller_fmu.parking.planning.shortcut_smoothing import pose_at
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork, PlanValue, set_best_segment, set_segment
 from modelkit.maths import clamp, sign, wrap_angle

@@ -77,7 +77,6 @@ class PlanningWork(NamedTuple):
     best_length: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "distance of a segment of the best path yet")]
     best_curvature: Annotated[Floats, Column("d", WORK_SEGMENTS, "1/m", "its curvature")]
     best_speed: Annotated[Floats, Column("d", WORK_SEGMENTS, "m/s", "its largest speed: see PathSegment")]
-    best_clearance: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "room about its begin: see PathSegment")]
     transition_fraction: Annotated[
         Floats, Column("d", WORK_SEGMENTS, "1", "fraction requested of the transition before it")
     ]
@@ -122,13 +121,11 @@ class PlanCount(IntEnum):
     BEST_SEGMENT_COUNT = 16
     BEST_STAGE = 17
     GOAL_TIGHTER = 18
-    VERTEX_COUNT = 21
+    VERTEX_COUNT = 20
     """Vertices of the obstacle map in use."""
-    MEASURED_SEGMENTS = 20
-    """Segments of the path kept at whose start the clearance has been measured."""
-    TRANSITION_TRIED = 22
+    TRANSITION_TRIED = 21
     """Number of the transition that is tried."""
-    ARC_COUNT = 23
+    ARC_COUNT = 22
     """Arcs of a transition on one side of a stop."""
 
 
@@ -209,8 +206,7 @@ def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int
 
 
 def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:
-    """Set a segment of the best path: ``distance`` [m], ``k`` [1/m]; its clearance is not measured yet."""
+    """Set a segment of the best path: ``distance`` [m], ``k`` [1/m]; it is no transition."""
     work.best_length[segment] = distance
     work.best_curvature[segment] = k
     work.best_speed[segment] = 0.0
-    work.best_clearance[segment] = 0.0

@@ -65,13 +65,19 @@ def begin_plan(memory: ParkingMemory) -> ParkingMemory:
 
 
 def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
-    """Return the memory of a vehicle that has no path: planned again once something has gone, else the reason."""
+    """Return the memory of a vehicle that has no path: planned again once something has gone, else the reason.
+
+    Echoes that were explained by what has gone came from elsewhere.
+    """
     if seconds(memory.perception.time - memory.plan.failed_at) > params.monitor.wait:
         return memory._replace(reason=memory.plan.failure)
     before = obstacle_count(memory)
     memory = forget_what_left(memory, inputs, params)
     if obstacle_count(memory) < before:
-        memory = memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1))
+        memory = memory._replace(
+            perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS),
+            plan=memory.plan._replace(plans=memory.plan.plans - 1),
+        )
         memory = begin_plan(memory)
     return memory
 
@@ -155,7 +161,7 @@ def continue_plan(
     if status == PlanningStatus.PLANNING and count <= params.plan.max_steps:
         return memory
     if status == PlanningStatus.PLANNED:
-        path = without_short_end(path_of_plan(work))
+        path = without_short_end(path_of_plan(work, plan.request))
         if path.margin >= params.plan.min_margin:
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
@@ -262,15 +268,23 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         without_explained(before[number], mapped, half_angle, params.monitor) for number in range(MAX_REMEMBERED)
     )
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
-    present = memory.perception.echoes
-    present = tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(MAX_SENSORS))
-    echoes = KnownEchoes(remembered, present)
+    echoes = KnownEchoes(remembered, _present_echoes(memory, outline, pose))
     obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
     goal = goal_pose(slot, outline, params.slot)
     memory = _with_plan(memory, obstacles, goal, inputs, params)
-    if slot.depth < least_depth(slot, outline, params.slot):
-        memory = without_path(memory, Reason.SLOT_TOO_SHALLOW, inputs, params)
+    least = least_depth(slot, outline, params.slot)
+    if slot.depth < least:
+        known = slot_of_filter(memory.search.slot, memory.search.slot_filter, outline).depth
+        stands_in_it = least <= known < UNKNOWN_DEPTH
+        reason = Reason.BLOCKED if stands_in_it else Reason.SLOT_TOO_SHALLOW
+        memory = without_path(memory, reason, inputs, params)
     return memory
+
+
+def _present_echoes(memory: ParkingMemory, outline: VehicleOutline, pose: Pose) -> tuple[EchoObstacle, ...]:
+    """Return what the sensors measure now as obstacles clear of the vehicle: the monitor may not let it nearer."""
+    present = memory.perception.echoes
+    return tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(MAX_SENSORS))
 
 
 def _without_own_place(memory: ParkingMemory, pose: Pose, outline: VehicleOutline) -> ParkingMemory:
@@ -297,7 +311,7 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
         _as_unknown(memory.perception.local_map.landmarks[number], outline, pose, params)
         for number in range(MAX_LANDMARKS)
     )
-    echoes = KnownEchoes(memory.perception.remembered, (EchoObstacle(),) * MAX_SENSORS)
+    echoes = KnownEchoes(memory.perception.remembered, _present_echoes(memory, outline, pose))
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
     if memory.strategy == Strategy.PULL_OUT:

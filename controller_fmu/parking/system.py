@@ -20,6 +20,7 @@ from controller_fmu.parking.following.path_tracking import (
 from controller_fmu.parking.following.rolling_steering import standstill_before
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import has_blind_side
 from controller_fmu.parking.monitor.collision_monitor import (
     EchoObstacle,
@@ -322,7 +323,9 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
         strategy=Strategy.SLOT,
         reason=Reason.NONE,
         search=memory.search._replace(stand=pose, waited=0, resumes=False),
-        perception=memory.perception._replace(remembered=(EchoObstacle(),) * MAX_REMEMBERED),
+        perception=memory.perception._replace(
+            remembered=(EchoObstacle(),) * MAX_REMEMBERED, echoes=(EchoObstacle(),) * MAX_SENSORS
+        ),
         plan=PlanProgress(),
         progress=PathProgress(stop_correction=memory.progress.stop_correction),
         verdict=MonitorVerdict(),

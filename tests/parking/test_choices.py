@@ -8,6 +8,7 @@ import pytest
 
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
+from modelkit.car import Car
 from modelkit.vocabulary import Prompt
 from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
@@ -47,7 +48,8 @@ def test_without_the_external_slot_nothing_is_found(files: Any, tmp_path: Path) 
 def test_the_car_is_handed_over_on_the_road(name: str, files: Any) -> None:
     recording, summary = driven(name, files)
     assert summary.outcome == "finished"
-    assert abs(np.ptp(recording.signals["vehicle.pose.y"])) > 0.6
+    front = recording.signals["vehicle.pose.y"] + Car().wheelbase * np.sin(recording.signals["vehicle.pose.heading"])
+    assert abs(front[-1] - front[0]) > 0.6
     assert last(recording, "controller.prompt") == Prompt.TAKE_OVER
 
 

@@ -21,6 +21,7 @@ from controller_fmu.parking.map.landmark import (
 from controller_fmu.parking.map.local_map import LandmarkMap, range_by_map, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
+from controller_fmu.parking.map.visibility import contradict
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange
 from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES
@@ -214,3 +215,14 @@ def test_a_pedestrian_who_left_proves_no_sensor_silent(confirmations: int, half:
         readings = tuple(CAR.ultrasonic.max_range if number == 5 else 1.0 for number in range(12))
         local_map = update_map(local_map, readings, Pose(), CAR.ultrasonic, PARAMS)
     assert (local_map.missed.counts[5] == MISSED_ECHOES) == silent
+
+
+@pytest.mark.parametrize(("confirmations", "left"), [(FACING_ECHOES, 0), (2 * FACING_ECHOES, 1)])
+def test_of_what_two_sensors_took_for_one_surface_nothing_is_left(confirmations: int, left: int) -> None:
+    """From a pedestrian to the kerb behind the car: where the pedestrian was there is nothing any more."""
+    surface = Landmark(LandmarkType.SEGMENT, start=-0.5, end=0.6, confirmations=confirmations)
+    gone = PredictedRange(1.0, EchoOrigin.INTERIOR, -0.4, 0.0)
+    for _ in range(PARAMS.contradictions):
+        surface = contradict(surface, gone, PARAMS)
+    assert (surface.type == LandmarkType.SEGMENT) == (left == 1)
+    assert left == 0 or (surface.start > -0.2 and surface.end == 0.6), "a side that was passed is shortened"

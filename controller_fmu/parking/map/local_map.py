@@ -14,17 +14,16 @@ from controller_fmu.parking.map.chain_update import (
     next_chain,
 )
 from controller_fmu.parking.map.echo_chain import EchoChain
-from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, length_of
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.oblique_side import ConeBoundaries, ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.visibility import (
-    BODY_BETWEEN,
     contradict,
     is_contradicted,
     is_in_reach,
+    is_permanent,
     predict_range,
     with_open_ends_extended,
 )
@@ -186,12 +185,6 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             )
     missed = count_missed_echo(local_map.missed, measurement.number, measurement.status, is_missed)
     return local_map._replace(missed=missed)
-
-
-def is_permanent(landmark: Landmark) -> bool:
-    """Return whether a landmark does not leave, as a pedestrian may: a long segment, measured from a flank."""
-    is_long = landmark.type == LandmarkType.SEGMENT and length_of(landmark) > BODY_BETWEEN
-    return is_long and landmark.confirmations > FACING_ECHOES
 
 
 def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:

@@ -2,6 +2,7 @@
 
 import math
 
+from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.landmark import (
     Landmark,
     LandmarkType,
@@ -102,13 +103,13 @@ def is_contradicted(
 def contradict(landmark: Landmark, predicted: PredictedRange, params: MappingParams) -> Landmark:
     """Return the landmark after an expected echo did not come: counted, then shortened or deleted.
 
-    A segment that is contradicted nearer to one end than to the other loses that end, as an open one; a point, or what
-    would be left too short, is deleted.
+    A permanent side loses the end that the contradiction is nearer to, the other one remains; of anything else, what
+    two sensors measured as one surface among it, nothing is left, nor of what would be left too short.
     """
     count = landmark.contradictions + 1
     if count < params.contradictions:
         return landmark._replace(contradictions=count)
-    if landmark.type == LandmarkType.POINT:
+    if not is_permanent(landmark):
         return Landmark()
     along = along_of(landmark, predicted.x, predicted.y)
     if along - landmark.start < landmark.end - along:
@@ -116,3 +117,9 @@ def contradict(landmark: Landmark, predicted: PredictedRange, params: MappingPar
     else:
         shortened = landmark._replace(end=along - MIN_LENGTH, end_known=False, contradictions=0)
     return shortened if length_of(shortened) > MIN_LENGTH else Landmark()
+
+
+def is_permanent(landmark: Landmark) -> bool:
+    """Return whether a landmark does not leave, as a pedestrian may: a long segment, measured from a flank."""
+    is_long = landmark.type == LandmarkType.SEGMENT and length_of(landmark) > BODY_BETWEEN
+    return is_long and landmark.confirmations > FACING_ECHOES

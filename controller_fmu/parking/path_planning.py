@@ -158,7 +158,8 @@ def continue_plan(
     count = continue_search(work, plan.request, params.plan.steps_per_sample)
     memory = memory._replace(plan=plan._replace(steps=count))
     status = search_status(work)
-    if status == PlanningStatus.PLANNING and count <= params.plan.max_steps:
+    most = params.plan.max_steps // 4 if memory.strategy == Strategy.SLOT else params.plan.max_steps
+    if status == PlanningStatus.PLANNING and count <= most:
         return memory
     if status == PlanningStatus.PLANNED:
         path = without_short_end(path_of_plan(work, plan.request))

@@ -154,12 +154,6 @@ def separation(a: OrientedBox, b: OrientedBox) -> float:
     return _smaller(_corners_gap(box_corners(a), b), _corners_gap(box_corners(b), a))
 
 
-def boxes_depth(a: Box, b: Box) -> float:
-    """Return the penetration depth [m] of two boxes: the shortest move that parts them; 0 where they do not overlap."""
-    depth = overlap_depth(orient(a), orient(b))
-    return depth if depth > 0.0 else 0.0
-
-
 def overlap_depth(a: OrientedBox, b: OrientedBox) -> float:
     """Return the least overlap [m] along the four directions of two boxes' sides (separating axes).
 
@@ -184,22 +178,6 @@ def reach(length: float, width: float) -> float:
     return 0.5 * math.sqrt(length * length + width * width)
 
 
-def ray_box(start: Point, direction: float, box: Box) -> float:
-    """Return the distance [m] along the ray of angle ``direction`` [rad] to ``box``; 0 from inside, or ``NO_HIT``."""
-    cos = math.cos(box.heading)
-    sin = math.sin(box.heading)
-    dx = start.x - box.x
-    dy = start.y - box.y
-    turn = direction - box.heading
-    first = _slab(dx * cos + dy * sin, math.cos(turn), 0.5 * box.length)
-    second = _slab(dy * cos - dx * sin, math.sin(turn), 0.5 * box.width)
-    enter = first.x if first.x > second.x else second.x
-    leave = first.y if first.y < second.y else second.y
-    if enter > leave or leave < 0.0:
-        return NO_HIT
-    return enter if enter > 0.0 else 0.0
-
-
 class Cone(NamedTuple):
     """A cone with its apex at ``start``: unit vector of its axis, sine and cosine of half its opening angle."""
 
@@ -212,15 +190,6 @@ def cone_of(start: Point, direction: float, half_angle: float) -> Cone:
     """Return the cone that opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad]."""
     axis = Point(math.cos(direction), math.sin(direction))
     return Cone(start, axis, Point(math.sin(half_angle), math.cos(half_angle)))
-
-
-def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> float:
-    """Return the distance [m] from ``start`` to the part of ``box`` inside a cone; 0 inside the box, or ``NO_HIT``.
-
-    The cone opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad].
-    """
-    seen = orient(box)
-    return cone_gap(cone_of(start, direction, half_angle), seen, box_corners(seen))
 
 
 def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
@@ -250,15 +219,6 @@ def _corners_gap(around: Corners, a: OrientedBox) -> float:
     left = _smaller(point_to_oriented(around.front_left, a), point_to_oriented(around.rear_left, a))
     right = _smaller(point_to_oriented(around.rear_right, a), point_to_oriented(around.front_right, a))
     return _smaller(left, right)
-
-
-def _slab(offset: float, rate: float, half: float) -> Point:
-    """Return where a ray enters and leaves the strip |offset + t rate| <= half, as (t, t)."""
-    if abs(rate) < 1e-12:
-        return Point(-NO_HIT, NO_HIT) if abs(offset) <= half else Point(NO_HIT, -NO_HIT)
-    one = (-half - offset) / rate
-    other = (half - offset) / rate
-    return Point(one, other) if one < other else Point(other, one)
 
 
 def _in_cone_frame(point: Point, cone: Cone) -> Point:

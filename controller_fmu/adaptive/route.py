@@ -46,14 +46,6 @@ class Foot(NamedTuple):
     heading_error: float = 0.0
 
 
-def length_of(route: Route) -> float:
-    """Return the length [m] of a route."""
-    total = 0.0
-    for piece in route.pieces:
-        total += piece.length
-    return total
-
-
 def drivable(route: Route) -> float:
     """Return the way [m] to the first jump of curvature, where the car has to stand, or to the end."""
     along = 0.0

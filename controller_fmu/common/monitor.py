@@ -35,17 +35,6 @@ class MonitorState(NamedTuple):
     """Pose at the last sample."""
 
 
-class Command(NamedTuple):
-    """What a manoeuvre asks of the car until the next sample."""
-
-    step: int
-    """Of its chart."""
-    wheel: float
-    """Steering-wheel angle [rad]."""
-    blocked: bool
-    """Something is in the way: the car is to wait."""
-
-
 def watch(
     state: MonitorState,
     inputs: Sensed,

@@ -16,7 +16,6 @@ from modelkit.signal import Role, Signal, Subset
 
 PAPER = "preview paper"
 HOUSE = "project default; the source states none"
-ROAD_PIECES = 12
 
 
 class Method(IntEnum):

@@ -12,7 +12,15 @@ import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.records import Channel, McapRecord, Metadata
 
-from orchestrator.presentation.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parse_record, top_records
+from orchestrator.presentation.log.records import (
+    CHUNK,
+    HEAD,
+    MESSAGE,
+    chunk_records,
+    parse_record,
+    read_record,
+    record_heads,
+)
 from tests.fuzz.inputs import VALUES
 from tests.fuzz.limits import ask
 
@@ -40,7 +48,7 @@ def damaged(data: bytes, draw: random.Random) -> bytes:
 def retold(data: bytes, key: str, text: str) -> bytes:
     """Return a file whose description of the run says something else, as tools of others may write it."""
     out = MAGIC
-    for piece in top_records(data):
+    for piece in (read_record(data, head) for head in record_heads(data)):
         body = bytes(piece.body)
         if piece.opcode == METADATA:
             record = parse_record(Metadata, piece)
@@ -62,7 +70,7 @@ def ended(data: bytes) -> bytes:
 def forged(data: bytes, draw: random.Random) -> bytes:
     """Return a file whose checksums are right and whose content is not."""
     out = MAGIC
-    for piece in top_records(data):
+    for piece in (read_record(data, head) for head in record_heads(data)):
         body = bytes(piece.body)
         if piece.opcode == DATA_END:
             break

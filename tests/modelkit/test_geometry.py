@@ -1,4 +1,4 @@
-"""Boxes, rays and cones against shapely, which knows nothing of our code."""
+"""Boxes and cones against shapely, which knows nothing of our code."""
 
 import math
 import random
@@ -11,10 +11,12 @@ from modelkit.geometry import (
     NO_HIT,
     Box,
     Point,
+    box_corners,
     boxes_gap,
     boxes_overlap,
     centre_gap,
-    cone_box,
+    cone_gap,
+    cone_of,
     corners,
     line_box,
     orient,
@@ -22,7 +24,6 @@ from modelkit.geometry import (
     outline,
     overlap_depth,
     point_gap,
-    ray_box,
 )
 from modelkit.vocabulary import Pose
 
@@ -81,23 +82,6 @@ def test_corners_are_those_of_the_turned_rectangle() -> None:
         assert polygon(box).symmetric_difference(shapely.Polygon(corners(box))).area < 1e-9
 
 
-def test_ray() -> None:
-    draw = random.Random(3)
-    hits = 0
-    for _ in range(5000):
-        box = random_box(draw)
-        start, angle = Point(draw.uniform(-6, 6), draw.uniform(-6, 6)), draw.uniform(-7, 7)
-        end = (start.x + 50.0 * math.cos(angle), start.y + 50.0 * math.sin(angle))
-        part = polygon(box).intersection(shapely.LineString([start, end]))
-        ours = ray_box(start, angle, box)
-        if part.length > 1e-9:
-            hits += 1
-            assert ours == pytest.approx(part.distance(shapely.Point(start)), abs=1e-9)
-        elif part.is_empty:
-            assert ours == NO_HIT
-    assert hits > 500
-
-
 def test_cone() -> None:
     draw = random.Random(4)
     seen = 0
@@ -110,7 +94,7 @@ def test_cone() -> None:
         )
         ends = [(start.x + 99.0 * math.cos(angle + t), start.y + 99.0 * math.sin(angle + t)) for t in (-half, half)]
         part = polygon(box).intersection(shapely.Polygon([start, *ends]))
-        ours = cone_box(start, angle, half, box)
+        ours = cone_gap(cone_of(start, angle, half), orient(box), box_corners(orient(box)))
         if part.area > 1e-9:
             seen += 1
             assert ours == pytest.approx(part.distance(shapely.Point(start)), abs=1e-7)

@@ -3,9 +3,21 @@
 import numpy as np
 import pytest
 
-from orchestrator.evaluation.verdict.comfort import dry_steering_count, peak_jerk
+from orchestrator.evaluation.verdict.comfort import DrySteering, PeakJerk
 
 STEPS = [0.005, 0.01, 0.05]
+
+
+def peak_jerk(t: np.ndarray, speed: np.ndarray) -> float:
+    found = PeakJerk()
+    found.add(t, speed)
+    return found.value
+
+
+def dry_steering_count(speed: np.ndarray, wheel: np.ndarray) -> float:
+    found = DrySteering()
+    found.add(speed, wheel)
+    return found.value
 
 
 def times(step: float, end: float = 10.0) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from modelkit.geometry import Box, boxes_depth, boxes_overlap, outline
+from modelkit.geometry import Box, boxes_overlap, orient, outline, overlap_depth
 from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.studies.parking.parking_world.bays import bay_count, in_bays, stands_in_a_bay
@@ -116,7 +116,7 @@ def test_nothing_in_a_scene_overlaps(scenes: list[DrawnScene]) -> None:
             boxes = scene.boxes(time)
             for a, b in itertools.combinations(boxes, 2):
                 if {a, b} != attached and (time == 0.0 or scene.moves(a) or scene.moves(b)):
-                    assert boxes_depth(boxes[a], boxes[b]) < 1e-6, (row, time, a, b)
+                    assert overlap_depth(orient(boxes[a]), orient(boxes[b])) < 1e-6, (row, time, a, b)
 
 
 def test_nothing_stands_in_the_drivers_pass(scenes: list[DrawnScene]) -> None:

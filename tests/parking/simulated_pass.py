@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from modelkit.car import Car, CarUltrasonic
-from modelkit.geometry import Box, Point, cone_box
+from modelkit.geometry import Box, Point, box_corners, cone_gap, cone_of, orient
 from modelkit.vocabulary import Pose
 
 CAR = Car()
@@ -29,7 +29,8 @@ def exact_ranges(pose: Pose, boxes: list[Box], sensors: CarUltrasonic) -> list[f
     found = []
     for mount in sensors.mounts:
         at = Point(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c)
-        ranges = [cone_box(at, pose.heading + mount.yaw, sensors.half_angle, box) for box in boxes]
+        cone = cone_of(at, pose.heading + mount.yaw, sensors.half_angle)
+        ranges = [cone_gap(cone, orient(box), box_corners(orient(box))) for box in boxes]
         found.append(min([sensors.max_range, *ranges]))
     return found
 

@@ -6,12 +6,15 @@ from xml.etree import ElementTree
 
 import pytest
 
+from orchestrator.inputs.scenario.models import MODELS, apart_models
 from orchestrator.presentation.drawing.chart_svg import chart_svg
-from orchestrator.presentation.report.charts import charts_data
+from orchestrator.presentation.report.charts import charts_of_models
 
 LETTER = 6.0
 """Mean width of a letter at 12 px."""
-CHARTS = [pytest.param(data, id=data["file"]) for _, data in charts_data()]
+CHARTS = [
+    pytest.param(data, id=data["file"]) for _, data in charts_of_models([*MODELS.values(), *apart_models().values()])
+]
 
 
 def boxes(svg: str) -> list[tuple[float, float, float, float]]:

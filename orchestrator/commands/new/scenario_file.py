@@ -31,8 +31,6 @@ FINAL_STATES = {
     "standby": frozenset({"standby", "idle", "init", "off", "ready", "wait", "waiting", "inactive", "none"}),
 }
 """State of our controller -> words in the names of states that probably mean it."""
-SHOWN_ROLES = {"phase": "mode", "manoeuvres": "manoeuvres", "prompt": "prompt", "steering_wheel_request": "request"}
-"""Output of our controller -> its role."""
 VEHICLE_ROLES = {"speed": "speed", "steering_wheel_angle": "wheel", "clearance": "clearance"}
 """Output of our vehicle -> its role."""
 YAML = (".yaml", ".yml")

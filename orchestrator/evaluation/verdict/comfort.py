@@ -80,17 +80,3 @@ class DrySteering:
     def value(self) -> float:
         """Return the count."""
         return float(self._closed + int(self._turned > TURNED))
-
-
-def peak_jerk(t: Array, speed: Array) -> float:
-    """Return the largest absolute jerk [m/s3] of one run (see :class:`PeakJerk`)."""
-    found = PeakJerk()
-    found.add(t, speed)
-    return found.value
-
-
-def dry_steering_count(speed: Array, wheel: Array) -> float:
-    """Return how many standstills there are in which the wheel is turned by more than 5 deg in all."""
-    found = DrySteering()
-    found.add(speed, wheel)
-    return found.value

@@ -201,12 +201,6 @@ def read_record(data: ByteSource, head: RecordHead) -> RawRecord:
     return RawRecord(head.at, head.opcode, data[head.at + HEAD.size : head.end])
 
 
-def top_records(data: ByteSource) -> Iterator[RawRecord]:
-    """Yield the records of a file without looking into them. Raises ``Damage`` where there is none."""
-    for head in record_heads(data):
-        yield read_record(data, head)
-
-
 def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[RawRecord]:
     """Yield the records of a chunk. Raises ``Damage`` if it is not what its checksum says, or has more than may be."""
     data = memoryview(_chunk_bytes(piece, budget))

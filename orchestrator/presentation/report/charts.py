@@ -23,11 +23,6 @@ ChartData = tuple[Chart, dict[str, Any]]
 """A chart, with what a page is given of it and the values that choose its system."""
 
 
-def charts_data() -> list[ChartData]:
-    """Return the charts of all systems."""
-    return [_data(*item) for item in (*_system_charts(), *_standalone_charts())]
-
-
 def charts_of_models(models: Sequence[Model]) -> list[ChartData]:
     """Return the charts of these models alone; other controllers are not imported."""
     own = [chart for model in models for chart in model.all_charts() if chart.signal]

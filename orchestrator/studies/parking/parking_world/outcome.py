@@ -62,7 +62,6 @@ COLUMNS = {
     "unavoidable": Metric("1", "1: a moving object would have touched a car that had stood for 1 s, too"),
 }
 MOVING_OBJECTS = (*NEIGHBOUR.values(), OVERHANG, FIRST_LEG, SECOND_LEG)
-NAMES = ("outcome", "reason", "kind", *MEASURES, *(WITHIN.format(name) for name in GBT.values()))
 EMPTY = Obstacle()._asdict()
 
 

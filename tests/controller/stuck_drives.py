@@ -67,11 +67,6 @@ class StuckDrive(NamedTuple):
         """Return whether something was still asked of the stuck wheel, long enough to tell it from a slow one."""
         return self.took - self.seen > LimitParams().steering_fault_debounce or self.delay >= 0.0
 
-    @property
-    def is_false(self) -> bool:
-        """Return whether a fault was found before the wheel stuck."""
-        return self.found < self.stuck
-
 
 def scenario_of(system: str, number: int, sticks: bool) -> Scenario:
     """Return drive ``number`` of a system, every second one with a real actuator; none for drives that do not stick."""
@@ -131,32 +126,3 @@ def _off_for_good(recording: Recording, stuck: float, end: float) -> float:
 def _first(recording: Recording, holds: Array) -> float:
     rows = np.flatnonzero(holds)
     return float(recording.t[rows[0]]) if len(rows) else math.nan
-
-
-HEADS = (
-    "",
-    "drives",
-    "asked of",
-    "found",
-    "within 0.3 s",
-    "median",
-    "most",
-    "touched",
-    "not stuck",
-    "false faults",
-)
-DETECTION_TIME = 0.305
-"""0.3 s, and half a sample for rounding."""
-
-
-def line_of(system: str, stuck: list[StuckDrive], healthy: list[StuckDrive]) -> list[str]:
-    """Return a system's line of the table, its cells in the order of ``HEADS``."""
-    asked = [item for item in stuck if item.is_asked]
-    delays = sorted(item.delay for item in asked if math.isfinite(item.delay))
-    wrong = sum(item.is_false for item in stuck) + sum(math.isfinite(item.found) for item in healthy)
-    return [
-        system,
-        *map(str, (len(stuck), len(asked), len(delays), sum(delay <= DETECTION_TIME for delay in delays))),
-        *(f"{value:.2f} s" for value in (delays[len(delays) // 2], delays[-1])),
-        *map(str, (sum(item.touched for item in stuck), len(healthy), wrong)),
-    ]

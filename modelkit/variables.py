@@ -135,17 +135,36 @@ def with_values(cls: type[Any], changes: dict[str, Any], value: Any = None) -> A
 
     Raises ``KeyError`` with the unknown name, ``ValueError`` if a number is out of its range.
     """
-    known = variables(cls, value)
-    index = {variable.name: place for place, variable in enumerate(known)}
-    scalars = [variable.start for variable in known]
+    shape: Any = cls
+    known, index = _defaults(shape), _places(shape)
+    old = cls() if value is None else value
+    scalars = [variable.kind(scalar) for variable, scalar in zip(known, flatten(old), strict=True)]
     for name, new in changes.items():
         if name not in index:
             raise KeyError(name)
-        signal = known[index[name]].signal
-        if not signal.low <= new <= signal.high:
-            raise ValueError(f"{name} = {new}: expected [{signal.low}, {signal.high}] {signal.unit}")
-        scalars[index[name]] = known[index[name]].kind(new)
-    return constructor(cls, value)(scalars)
+        variable = known[index[name]]
+        if not variable.signal.low <= new <= variable.signal.high:
+            raise ValueError(
+                f"{name} = {new}: expected [{variable.signal.low}, {variable.signal.high}] {variable.signal.unit}"
+            )
+        scalars[index[name]] = variable.kind(new)
+    return _rebuild(old, iter(scalars))
+
+
+@cache
+def _places(cls: type[Any]) -> dict[str, int]:
+    """Return flat name -> place in :func:`variables`."""
+    shape: Any = cls
+    return {variable.name: place for place, variable in enumerate(_defaults(shape))}
+
+
+def _rebuild(shape: Any, scalars: Iterator[Any]) -> Any:
+    """Return a value of ``shape``'s structure and types made of the next ``scalars``."""
+    if not isinstance(shape, tuple):
+        scalar = next(scalars)
+        return bool(scalar) if isinstance(shape, bool) else int(scalar) if isinstance(shape, int) else scalar
+    items = [_rebuild(item, scalars) for item in shape]
+    return type(shape)(*items) if hasattr(shape, "_fields") else tuple(items)
 
 
 def _flat_sources(shape: Any, source: str) -> list[str]:

@@ -6,6 +6,7 @@ So two FMUs, two builds of one FMU, and a host that has imported the same packag
 import ast
 import re
 import sys
+from functools import cache
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
@@ -109,17 +110,33 @@ def rewrite(source: bytes, path: str, root: str, tops: set[str]) -> bytes:
     Raises ``ValueError`` for ``import top.x`` and for packages that are neither bundled nor of the standard library.
     """
     lines = source.split(b"\n")
+    for found in _imports(source):
+        _check_import(found.module, f"{path}:{found.line}", tops if found.is_from else set())
+        if found.is_from and found.module.split(".")[0] in tops:
+            line = lines[found.line - 1]
+            head, tail = line[: found.column], line[found.column :]
+            lines[found.line - 1] = head + re.sub(rb"^from\s+", f"from {root}.".encode(), tail)
+    return b"\n".join(lines)
+
+
+class _Import(NamedTuple):
+    module: str
+    line: int
+    column: int
+    is_from: bool
+    """``from module import ...``, not ``import module``."""
+
+
+@cache
+def _imports(source: bytes) -> tuple[_Import, ...]:
+    """Return the absolute imports of a file: most files are in the FMUs of several models."""
+    found = []
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                _check_import(alias.name, f"{path}:{node.lineno}", set())
+            found += [_Import(alias.name, node.lineno, node.col_offset, False) for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
-            _check_import(node.module or "", f"{path}:{node.lineno}", tops)
-            if (node.module or "").split(".")[0] in tops:
-                line = lines[node.lineno - 1]
-                head, tail = line[: node.col_offset], line[node.col_offset :]
-                lines[node.lineno - 1] = head + re.sub(rb"^from\s+", f"from {root}.".encode(), tail)
-    return b"\n".join(lines)
+            found.append(_Import(node.module or "", node.lineno, node.col_offset, True))
+    return tuple(found)
 
 
 def runtime_folder() -> Path:

@@ -3,9 +3,12 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
+from fmus.cache_paths import CACHE_FOLDER
+from fmus.contents.archive import DESCRIPTION, archive_bytes, archive_guid, content_guid
 from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.fmu_documentation import documentation, reference_result
+from fmus.files import write_whole
+from fmus.locks import cache_file
 from fmus.python.bundle import MODEL_SLAVE, SlaveClass, bundle, runtime_folder, runtime_licence, runtime_version
 from fmus.python.layout import POLICY_FILE
 from modelkit.model import Model
@@ -35,6 +38,8 @@ fmi2Error at once.</p>
 """
 BEHIND = "pythonfmu-export.so"
 """The library of PythonFMU behind ours."""
+CACHED_FMUS = 4
+"""FMUs of a name that stay in the cache: their reference results take seconds."""
 
 
 class PolicyFile(NamedTuple):
@@ -56,9 +61,13 @@ def build(model: Model, out_dir: Path, front: bytes | None = None, policy: Polic
     guid = content_guid({**files, DESCRIPTION: _description(model, "")})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
-        files[DESCRIPTION] = _description(model, guid)
-        files["resources/guid.txt"] = guid.encode()
-        write_archive(path, {**files, **(reference_result(model) if policy is None else {})})
+
+        def made() -> bytes:
+            own = {DESCRIPTION: _description(model, guid), "resources/guid.txt": guid.encode()}
+            return archive_bytes({**files, **own, **(reference_result(model) if policy is None else {})})
+
+        cached = cache_file(CACHE_FOLDER, f"{model.name}-python", guid.strip("{}"), ".fmu", made, CACHED_FMUS)
+        write_whole(path, cached.read_bytes())
     return path
 
 

@@ -10,7 +10,6 @@ import fmpy
 import pytest
 import table_model
 import toy_model
-from fmpy.validation import validate_fmu
 from lxml import etree
 
 from fmus.contents.arrays import INDEX, fmi_arrays
@@ -19,6 +18,7 @@ from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from modelkit.variables import variables
 from tests.fmi.built import native_fmu_of
+from tests.fmi.fmpy_check import problems_of
 from tests.fmi.host import random_inputs
 from tests.fmi.raw3 import OK, Library3
 from tests.fmi.test_python_fmu import STEPS, in_process
@@ -87,7 +87,7 @@ def test_simulates_in_fmpy_and_gives_the_reference_result(fmi3_fmus: Any, model:
 
 def test_checkers_find_nothing(fmi3_fmus: Any, model: Any) -> None:
     path = fmi3_fmus[model.name]
-    assert validate_fmu(str(path)) == []
+    assert problems_of(path) == []
     for file, schema in (
         ("terminalsAndIcons/terminalsAndIcons.xml", "fmi3TerminalsAndIcons.xsd"),
         ("sources/buildDescription.xml", "fmi3BuildDescription.xsd"),

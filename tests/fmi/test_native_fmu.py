@@ -1,5 +1,6 @@
 """The native FMU is its model, to the bit, and differs from the PythonFMU in nothing else."""
 
+import re
 import struct
 import subprocess
 import sys
@@ -10,13 +11,13 @@ from xml.etree import ElementTree
 
 import fmpy
 import pytest
-from fmpy.validation import validate_fmu
 
 from fmus.contents.archive import archive_guid
 from fmus.contents.variables import fmi_variables
 from fmus.native import compilers
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
+from tests.fmi.fmpy_check import problems_of
 from tests.fmi.host import OK, Host, random_inputs
 from tests.fmi.test_python_fmu import STEPS, in_process
 
@@ -81,9 +82,21 @@ def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(
     assert text(native_fmus[model.name]) == text(python_fmus[model.name])
 
 
+def test_fmpy_refuses_a_name_that_is_none(native_fmus: Any, tmp_path: Path) -> None:
+    with zipfile.ZipFile(native_fmus["Toy"]) as archive:
+        archive.extractall(tmp_path / "toy")
+    described = tmp_path / "toy" / "modelDescription.xml"
+    text = described.read_text(encoding="utf-8")
+    name = re.search(r'<ScalarVariable name="([^"]+)"', text)
+    assert name
+    described.write_text(text.replace(f'"{name[1]}"', '"1..x"', 1), encoding="utf-8")
+    for _ in range(2):
+        assert any('"1..x"' in problem for problem in problems_of(tmp_path / "toy"))
+
+
 def test_checkers_find_nothing(native_fmus: Any, model: Any) -> None:
     path = str(native_fmus[model.name])
-    assert validate_fmu(path) == []
+    assert problems_of(path) == []
     command = [str(Path(sys.executable).parent / "fmutool"), "-input", path, "-check"]
     result = subprocess.run(command, capture_output=True, text=True, check=True)
     text = result.stdout + result.stderr

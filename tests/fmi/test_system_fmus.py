@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
-from fmpy.validation import validate_fmu
 
 from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS
-from controller_fmu.common.phases import is_over
 from controller_fmu.registry import System
 from fmus.contents.arrays import fmi_arrays, visible_arrays
 from fmus.contents.description import model_description
@@ -22,10 +21,10 @@ from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cli import main
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from tests.fmi.built import native_fmu_of
+from tests.fmi.fmpy_check import problems_of
 from tests.fmi.host import ERROR, OK, Host, random_inputs
 from tests.fmi.test_python_fmu import bits
-from tests.fmi.test_tunable import TO_CONTROLLER, TO_VEHICLE
-from vehicle_fmu import MODEL as VEHICLE
+from tests.native_runs import native_recording
 
 RUNS = {
     System.NTBPTCWPT: ("guo2015-case4", 30.0),
@@ -97,26 +96,20 @@ def unwrapped(value: Any) -> Any:
 def read_and_told(system: Any) -> Any:
     """Return the parameters and inputs that a scenario's run reads, and the outputs that it changes."""
     name, stop = RUNS[system]
-    scenario = load_scenario(name, [f"controller.system={system.name.lower()}"])
+    system_set = f"controller.system={system.name.lower()}"
+    scenario = load_scenario(name, [system_set])
     read: set[str] = set()
     heard: set[str] = set()
-    told_by: set[str] = set()
-    car = with_values(VEHICLE.params, dict(scenario.vehicle))
+    signals = native_recording(name, system_set, f"stop_time={stop}", f"step={STEP_NS / 1e9}").signals
     params: Any = Watched(with_values(MODEL.params, dict(scenario.controller)), "", read)
-    vehicle, reported = VEHICLE.initialize(car)
+    inputs = np.column_stack([signals[f"controller.{item.name}"] for item in variables(MODEL.inputs)]).tolist()
+    as_inputs, step = constructor(MODEL.inputs), MODEL.stepper(None)
     controller, asked = MODEL.initialize(params)
-    first = flatten(MODEL.outputs())
-    names = [item.name for item in variables(MODEL.outputs)]
-    for _ in range(round(stop * 100)):
-        to_vehicle = TO_VEHICLE(asked)
-        to_controller: Any = Watched(TO_CONTROLLER(reported), "", heard)
-        vehicle, reported = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
-        controller, asked = MODEL.stepper(None)(controller, to_controller, params, STEP_NS)
-        told_by |= {
-            name for name, now, default in zip(names, flatten(unwrapped(asked)), first, strict=True) if now != default
-        }
-        if is_over(asked.phase) and reported.speed == 0.0:
-            break
+    for row in inputs[:-1]:
+        controller, asked = step(controller, Watched(as_inputs(row), "", heard), params, STEP_NS)
+    outputs = variables(MODEL.outputs)
+    assert flatten(unwrapped(asked)) == [signals[f"controller.{item.name}"][-1] for item in outputs]
+    told_by = {item.name for item in outputs if (signals[f"controller.{item.name}"] != item.start).any()}
     return read, heard, told_by
 
 
@@ -215,7 +208,7 @@ def test_checkers_find_nothing_in_a_native_one(native_hsic: Any) -> None:
 
 
 def check(path: Any) -> None:
-    assert validate_fmu(str(path)) == []
+    assert problems_of(path) == []
     command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert "No semantic error" in done.stdout + done.stderr

@@ -23,14 +23,14 @@ def made(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("made", KINDS, indirect=True)
 def test_what_it_makes_runs_at_once_and_takes_its_parameters(made: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", f"{made}/scenario.yaml", "--fmus", "none", "--json", "--no-page"]) == 0
+    assert main(["run", f"{made}/scenario.yaml", "--json", "--no-page"]) == 0
     summary = json.loads(capsys.readouterr().out)
     used = {item["name"]: item for item in summary["fmus"]}[made.removeprefix("my_")]
     assert used["kind"] == "foreign"
     assert Path(used["path"]).name == f"{made.title().replace('_', '')}.fmu"
     changed = {"my_controller": "controller.turn=40deg", "my_vehicle": "vehicle.driver_speed=0.3"}[made]
     before, before_speed = summary["final"]["x"], summary["max_speed"]
-    main(["run", f"{made}/scenario.yaml", "--fmus", "none", "--json", "--no-page", "--set", changed])
+    main(["run", f"{made}/scenario.yaml", "--json", "--no-page", "--set", changed])
     summary = json.loads(capsys.readouterr().out)
     assert (summary["final"]["x"], summary["max_speed"]) != (before, before_speed)
 
@@ -44,14 +44,14 @@ def test_its_tests_pass_and_its_readme_is_true(made: str) -> None:
     lines = [words for words in lines if words[:1] == ["apa"]]
     assert len(lines) == 6
     for words in lines:
-        assert main([*words[1:], *(["--fmus", "none"] if words[1] in ("run", "test") else [])]) in (0, 1), words
+        assert main(words[1:]) in (0, 1), words
     assert Path("build/native").is_dir()
 
 
 @pytest.mark.parametrize("made", KINDS, indirect=True)
 def test_a_model_may_stand_in_the_place_of_ours(made: str) -> None:
     kind = made.removeprefix("my_")
-    words = ["test", "guo2015-case4", f"--{kind}", f"{made}:MODEL", "--fmus", "none", "--quiet"]
+    words = ["test", "guo2015-case4", f"--{kind}", f"{made}:MODEL", "--quiet"]
     assert main(words) in (0, 1)
     assert json.loads(Path("runs/test/guo2015-case4/summary.json").read_text())["fmus"][0]["name"] == "vehicle"
 

@@ -7,10 +7,10 @@ import pytest
 from controller_fmu.guo2015.params import GuoParams
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.session.session import run_scenario
 from orchestrator.studies.papers.guo2015 import case_rows, reproduce
 from orchestrator.studies.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
 from orchestrator.studies.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
+from tests.native_runs import native_recording
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),
@@ -60,8 +60,8 @@ def test_the_gains_are_the_paper_s() -> None:
 @pytest.mark.parametrize(("gain", "factor"), [("k1", 0.5), ("k2", 0.5), ("k3", 2.0), ("k4", 2.0), ("k4", 0.5)])
 def test_a_gain_doubled_or_halved_misses_a_check(gain: str, factor: float) -> None:
     value = factor * getattr(GuoParams(), gain)
-    scenario = load_scenario("guo2015-case4-105", [f"controller.guo2015.{gain}={value}"])
-    recording = run_scenario(scenario, None, kind="none").recording
+    change = f"controller.guo2015.{gain}={value}"
+    scenario, recording = load_scenario("guo2015-case4-105", [change]), native_recording("guo2015-case4-105", change)
     rows = case_rows(4, Driven(scenario, recording, summarize(recording, scenario, 1.0)))
     assert [row for row in rows if row.basis == PRINTED and row.as_expected is False]
 

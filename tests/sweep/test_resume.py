@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -64,11 +65,28 @@ def wait_for_parts(process: Any, out: Any, count: Any) -> None:
         time.sleep(0.005)
 
 
-def test_a_killed_study_goes_on_to_the_same_bytes(study: Any, whole: Any, tmp_path: Path) -> None:
-    process = begun(study, tmp_path, "--jobs", "1")
-    wait_for_parts(process, tmp_path, 3)
+@pytest.fixture(scope="module")
+def killed(study: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The folder of a study that was killed; tests copy it before they go on with it."""
+    folder = tmp_path_factory.mktemp("killed")
+    process = begun(study, folder, "--jobs", "1")
+    wait_for_parts(process, folder, 3)
     os.kill(process.pid, signal.SIGKILL)
     process.communicate()
+    return folder
+
+
+@pytest.fixture
+def small(study: Any, tmp_path: Path) -> Any:
+    """A study of four runs."""
+    path = tmp_path / "small" / "trial.yaml"
+    path.parent.mkdir()
+    path.write_text(study.read_text().replace("n: 300", "n: 2"))
+    return path
+
+
+def test_a_killed_study_goes_on_to_the_same_bytes(study: Any, killed: Any, whole: Any, tmp_path: Path) -> None:
+    shutil.copytree(killed, tmp_path, dirs_exist_ok=True)
     kept = {path: path.stat().st_mtime_ns for path in parts(tmp_path)}
     assert 3 <= len(kept) < COUNT / CHUNK
     again = begun(study, tmp_path, "--jobs", "1", "--resume")
@@ -92,26 +110,21 @@ def test_an_interrupted_study_keeps_what_is_done(study: Any, whole: Any, tmp_pat
 
 
 def test_an_unfinished_study_is_not_overwritten_unasked(
-    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    study: Any, small: Any, killed: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "parts").mkdir()
-    assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 0
-    process = begun(study, tmp_path, "--jobs", "1")
-    wait_for_parts(process, tmp_path, 1)
-    process.kill()
-    process.communicate()
+    sweep(small, tmp_path)  # an empty folder is no unfinished study
+    shutil.copytree(killed, tmp_path, dirs_exist_ok=True)
     assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 2
     assert "--resume goes on, --restart" in capsys.readouterr().err
     other = tmp_path / "other.yaml"
     other.write_text(study.read_text().replace("2.0]", "2.1]"))
     assert main(["sweep", str(other), "--out", str(tmp_path), "--no-page", "--resume"]) == 2
     assert "made with another design and study" in capsys.readouterr().err
-    sweep(study, tmp_path, "--restart")
+    assert Table(sweep(small, tmp_path, "--restart")).count == 4
 
 
-def test_a_study_may_be_finished_by_another_engine(study: Any, tmp_path: Path) -> None:
-    small = tmp_path / "trial.yaml"
-    small.write_text(study.read_text().replace("n: 300", "n: 2"))
+def test_a_study_may_be_finished_by_another_engine(small: Any, tmp_path: Path) -> None:
     common = ["sweep", str(small), "--no-page", "--chunk", "2", "--out"]
     assert main([*common, str(tmp_path / "batch")]) == 0
     assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0

@@ -62,10 +62,11 @@ class Block:
         """Return room for the values of ``count`` exchanges."""
         return np.empty((count, len(self.places)), dtype=self.dtype)
 
-    def call(self, component: Any, rows: Any, k: Any) -> Any:
-        """Return the status of the call that hands over, or fetches, row ``k``."""
-        at = rows.ctypes.data + k * rows.strides[0]
-        return self.function(component, self.references, len(self.references), at, len(self.places))
+    def caller(self, component: Any, rows: Any) -> Any:
+        """Return the function that hands over, or fetches, a row by its number and returns the status."""
+        at, width = rows.ctypes.data, rows.strides[0]
+        function, references, count, size = self.function, self.references, len(self.references), len(self.places)
+        return lambda k: function(component, references, count, at + k * width, size)
 
 
 class Fmi3:
@@ -87,15 +88,18 @@ class Fmi3:
     def __call__(self, params: Any, given: Any, step_ns: Any) -> Any:
         component = self.library.instantiate()
         for block in self.params:
-            assert block.call(component, np.array([params[block.places]], block.dtype), 0) == OK, self.library.messages
+            row = np.array([params[block.places]], block.dtype)
+            assert block.caller(component, row)(0) == OK, self.library.messages
         assert self.library.enter(component) == OK
         assert self.library.call("ExitInitializationMode", component) == OK
         heard = [(block, np.ascontiguousarray(given[:, block.places]).astype(block.dtype)) for block in self.inputs]
         reported = [(block, block.rows(len(given))) for block in self.outputs]
+        fetch = [block.caller(component, rows) for block, rows in reported]
+        hand_over = [block.caller(component, rows) for block, rows in heard]
         for k in range(len(given)):
-            good = all(block.call(component, rows, k) == OK for block, rows in reported)
+            good = all(call(k) == OK for call in fetch)
             if k + 1 < len(given):
-                good &= all(block.call(component, rows, k) == OK for block, rows in heard)
+                good &= all(call(k) == OK for call in hand_over)
                 good &= self.library.step(component, k * step_ns / 1e9, step_ns / 1e9) == OK
             assert good, self.library.messages
         self.library.free(component)

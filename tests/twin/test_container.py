@@ -10,7 +10,6 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
-from fmpy.validation import validate_fmu
 
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.variables import visible_variables
@@ -26,6 +25,7 @@ from orchestrator.presentation.export.system_of import one_model
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile
 from tests.fmi.built import native_fmu_of
+from tests.fmi.fmpy_check import problems_of
 from tests.fmi.host import OK, Host
 from tests.twin.replays import CLibrary, Fmi3
 from tests.twin.test_same_bits import same
@@ -175,7 +175,7 @@ def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits() -> Non
 
 @pytest.mark.parametrize("fmi", [2, pytest.param(3, marks=FMI_3)])
 def test_checkers_find_nothing(fmi: int) -> None:
-    assert validate_fmu(str(container(fmi))) == []
+    assert problems_of(container(fmi)) == []
     command = [str(Path(sys.executable).parent / "fmutool"), "-input", str(container(fmi)), "-check"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert "ERROR" not in done.stdout + done.stderr
@@ -242,7 +242,7 @@ def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
 def test_an_input_left_open_is_what_the_tool_says(tmp_path: Path) -> None:
     out = tmp_path / "open.fmu"
     assert main(["export", "container", CASE.name, "--input", "vehicle.prompt", "--out", str(out)]) == 0
-    assert validate_fmu(str(out)) == []
+    assert problems_of(out) == []
     with Host(out) as host:
         host.initialize()
         for k in range(400):

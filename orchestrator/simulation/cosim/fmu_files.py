@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -108,8 +109,9 @@ def select_platforms(asked: Iterable[str]) -> list[str] | None:
     return wanted or None
 
 
+@cache
 def sources_hash() -> str:
-    """Return a hash over all files that an FMU is made from."""
+    """Return a hash over all files that an FMU is made from, as they were when this process first asked."""
     digest = hashlib.sha256()
     for room in SOURCES:
         for path in sorted((ROOT / room).rglob("*")):

@@ -19,6 +19,7 @@ FASTER_AT = 18.5
 SLOW_SPEEDS = tuple(np.round(np.linspace(0.24, 0.38, 29), 4).tolist())
 FAST_SPEEDS = tuple(np.round(np.linspace(1.1, 2.0, 19), 4).tolist())
 """Speeds before and after that [m/s]."""
+SLOW_KEY, FAST_KEY = "driver.profile[1].speed", "driver.profile[2].speed"
 
 
 class PrintedNumber(NamedTuple):
@@ -77,8 +78,13 @@ def fit_rows(run: str) -> list[Row]:
 def fit_speeds(run: str, slow_speeds: tuple[float, ...], fast_speeds: tuple[float, ...]) -> SpeedFit:
     """Return the pair of speeds [m/s] whose worst number is the fewest limits off, and all pairs within the limits."""
     pairs = [(slow, fast) for slow in slow_speeds for fast in fast_speeds]
+    base = load_scenario(run, _profile(*pairs[0]))
     cases = [
-        LabelledScenario({"slow": slow, "fast": fast}, load_scenario(run, _profile(slow, fast))) for slow, fast in pairs
+        LabelledScenario(
+            {"slow": slow, "fast": fast},
+            base.model_copy(update={"vehicle": {**base.vehicle, SLOW_KEY: slow, FAST_KEY: fast}}),
+        )
+        for slow, fast in pairs
     ]
     scenario, design = design_of(cases)
     measures = {f"number{k}": number.measure for k, number in enumerate(NUMBERS)}
@@ -92,6 +98,5 @@ def fit_speeds(run: str, slow_speeds: tuple[float, ...], fast_speeds: tuple[floa
 
 
 def _profile(slow: float, fast: float) -> list[str]:
-    entries = ((1, 0.0, slow), (2, FASTER_AT, fast))
-    place = "vehicle.driver.profile[{}].{}={}"
-    return [place.format(k, key, value) for k, at, speed in entries for key, value in (("at", at), ("speed", speed))]
+    times = ("vehicle.driver.profile[1].at=0", f"vehicle.driver.profile[2].at={FASTER_AT}")
+    return [*times, f"vehicle.{SLOW_KEY}={slow}", f"vehicle.{FAST_KEY}={fast}"]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from orchestrator.evaluation.verdict.summary import Event, summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.studies.papers.result import Row
 
 RUN = "guo2015-case4-105"
@@ -77,5 +78,7 @@ def start_of_point_tracking(fitted: Fitted, value: float) -> Event | None:
     """Return where case 4 leaves the path with ``fitted`` at this value; None if it does not."""
     unit = "deg/s" if fitted.unit == "deg/s" else ""
     scenario = load_scenario(RUN, [f"{fitted.name}={value * fitted.per_unit}{unit}", "stop_time=6"])
-    events = summarize(run_scenario(scenario, None, kind="none").recording, scenario, 0.0).events
+    kind = "native" if can_compile() else "none"
+    files = fmu_files(kind) if can_compile() else None
+    events = summarize(run_scenario(scenario, files, kind=kind).recording, scenario, 0.0).events
     return next((event for event in events if event.from_ == "PATH_TRACKING"), None)

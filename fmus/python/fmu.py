@@ -62,11 +62,11 @@ def build(model: Model, out_dir: Path, front: bytes | None = None, policy: Polic
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
 
-        def made() -> bytes:
+        def pack() -> bytes:
             own = {DESCRIPTION: _description(model, guid), "resources/guid.txt": guid.encode()}
             return archive_bytes({**files, **own, **(reference_result(model) if policy is None else {})})
 
-        cached = cache_file(CACHE_FOLDER, f"{model.name}-python", guid.strip("{}"), ".fmu", made, CACHED_FMUS)
+        cached = cache_file(CACHE_FOLDER, f"{model.name}-python", guid.strip("{}"), ".fmu", pack, CACHED_FMUS)
         write_whole(path, cached.read_bytes())
     return path
 

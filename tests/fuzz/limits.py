@@ -85,7 +85,7 @@ def goes_on(said: str) -> bool:
 
 @contextlib.contextmanager
 def alarm(seconds: float, goes_on: Callable[[], bool] = lambda: False) -> Iterator[None]:
-    """Raise ``Hangs`` in what takes longer, as ``FairTime`` counts, or ``GoesOn`` where that is told of it."""
+    """Raise ``Hangs`` in what takes longer, as ``FairTime`` counts, or ``GoesOn`` where ``goes_on`` is true."""
     taken = FairTime(os.getpid())
 
     def look(*_: object) -> None:

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"
 FILES = sorted(CORPUS.glob("*.yaml"))
 SETTINGS = (CORPUS / "settings.txt").read_text().splitlines()
-TOLD = (CORPUS / "told.txt").read_text().splitlines()
+METADATA_LINES = (CORPUS / "metadata.txt").read_text().splitlines()
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +52,8 @@ def test_settings_that_broke_it_once_are_refused_in_a_line(line: str, tmp_path: 
     assert answer.err.count("\n") == 1
 
 
-@pytest.mark.parametrize("line", TOLD)
-def test_what_a_log_told_once_and_broke_it_is_refused_in_a_line(line: str, log: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("line", METADATA_LINES)
+def test_metadata_that_broke_it_once_is_refused_in_a_line(line: str, log: Path, tmp_path: Path) -> None:
     key, _, text = line.partition(" ")
     odd = tmp_path / "odd.mcap"
     odd.write_bytes(retold(log.read_bytes(), key, text))

@@ -9,7 +9,7 @@ from modelkit.car import Car
 from modelkit.vocabulary import Pose
 from orchestrator.inputs.scenario.slot_sizes import ParkingType
 from orchestrator.studies.parking.cases import CARS, KINDS
-from orchestrator.studies.parking.pull_out_cases import cases, start_of, things_of
+from orchestrator.studies.parking.pull_out_cases import cases, footprints_of, start_of
 from orchestrator.studies.parking.pull_out_feasibility import free_ahead, goal_of, is_path
 from orchestrator.studies.parking.pull_out_study import study
 
@@ -26,7 +26,7 @@ def test_every_car_stands_free_between_its_neighbours() -> None:
     assert {case.kind for case in chosen} == set(KINDS)
     for case in chosen:
         body = outline(Pose(*start_of(case)), CARS[case.car])
-        things = {name: box(item.x0, item.y0, item.x1, item.y1) for name, item in things_of(case).items()}
+        things = {name: box(item.x0, item.y0, item.x1, item.y1) for name, item in footprints_of(case).items()}
         nearest = {name: body.distance(thing) for name, thing in things.items()}
         assert min(nearest.values()) > 0.0
         assert nearest["first"] + nearest["second"] == pytest.approx(case.extra, abs=0.2)
@@ -36,7 +36,7 @@ def test_what_is_free_ahead_is_what_the_row_leaves() -> None:
     along = next(case for case in cases(20) if case.kind == ParkingType.PARALLEL)
     x, y, heading = start_of(along)
     car = CARS[along.car]
-    ahead = things_of(along)["second"].x0 - x - car.wheelbase - car.front_overhang
+    ahead = footprints_of(along)["second"].x0 - x - car.wheelbase - car.front_overhang
     assert free_ahead(along, Pose(x, along.side * y, along.side * heading)) == pytest.approx(ahead, abs=0.15)
     assert free_ahead(along, Pose(x, along.side * (y + 4.0), 0.0)) >= 5.0
 

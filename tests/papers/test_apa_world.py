@@ -127,18 +127,18 @@ def test_a_neighbour_who_has_moved_moves_the_line_of_a_row_across_the_road() -> 
     row: dict[str, Any] = {
         "outcome": "parked", "reason": "", "within GB/T 41630, perpendicular": False, "kind": 1.0, "manoeuvres": 3,
         "duration": 40.0, "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.outline_margin": -0.3,
-        "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
+        "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_travel": 0.4,
         "vehicle.car.wheelbase": 2.5, "vehicle.car.front_overhang": 0.8, "vehicle.car.rear_overhang": 0.7,
         "vehicle.car.width": 1.7, "final.x": 0.0, "final.y": -3.0, "final.heading": 0.5 * math.pi,
         "slot.x": 0.0, "slot.y": -2.25, "slot.heading": 0.5 * math.pi, "slot.length": 4.5, "slot.width": 2.5,
     }  # fmt: skip
     assert ends.end_of(row, None) == ends.PARKED, "20 cm further out"
     assert ends.end_of({**row, "mover_at": 39.9}, None) == ends.FALSE, "he has only set out"
-    assert ends.end_of({**row, "mover_way": -0.4}, None) == ends.FALSE
+    assert ends.end_of({**row, "mover_travel": -0.4}, None) == ends.FALSE
     assert ends.end_of({**row, "mover": 0}, None) == ends.FALSE
     deep = {**row, "final.y": -4.2}
-    assert ends.end_of({**deep, "mover_way": -0.6}, None) == ends.PARKED, "30 cm further in: 10 cm too deep"
-    assert ends.end_of({**deep, "mover_way": -0.3}, None) == ends.FALSE, "25 cm too deep"
+    assert ends.end_of({**deep, "mover_travel": -0.6}, None) == ends.PARKED, "30 cm further in: 10 cm too deep"
+    assert ends.end_of({**deep, "mover_travel": -0.3}, None) == ends.FALSE, "25 cm too deep"
     left = {name: -row[name] for name in ("final.y", "final.heading", "slot.y", "slot.heading")}
     assert ends.end_of({**row, **left}, None) == ends.PARKED
 
@@ -160,9 +160,9 @@ def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() ->
     assert said(**{**stop, "kind": 0}, depth=0.0) == (1.0, 1.0)
     assert said(kind=1, behind=1, depth=0.0) == (1.0, 1.0)
     assert said(speed=20.1) == said(lost=8) == said(lost=9) == (1.0, 0.0)
-    assert said(mover=4, mover_way=0.9, extra=0.8) == (1.0, 0.0)
-    assert said(mover=5, mover_way=0.7, extra=0.8) == said(mover=4, mover_way=-0.9, extra=0.8) == (1.0, 1.0)
-    assert said(mover=4, mover_way=0.9, extra=0.8, kind=1) == (1.0, 1.0)
+    assert said(mover=4, mover_travel=0.9, extra=0.8) == (1.0, 0.0)
+    assert said(mover=5, mover_travel=0.7, extra=0.8) == said(mover=4, mover_travel=-0.9, extra=0.8) == (1.0, 1.0)
+    assert said(mover=4, mover_travel=0.9, extra=0.8, kind=1) == (1.0, 1.0)
     assert said(person=4, person_place=0.5) == said(person=5, person_place=0.5) == (1.0, 0.0)
     assert said(person=4, person_place=-0.3) == said(person=3, person_place=0.5) == (1.0, 1.0)
 

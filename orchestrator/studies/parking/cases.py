@@ -94,7 +94,7 @@ def cases(lot: int = 0) -> list[GridCase]:
 def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return (vehicle, controller) parameters of a case."""
     car = CARS[case.car]
-    lot = random.Random(1000 + case.number + SEED_STRIDE * case.lot)
+    draw = random.Random(1000 + case.number + SEED_STRIDE * case.lot)
     vehicle: dict[str, Any] = {**car_parameters(car), "body": BODY[case.body]}
     controller: dict[str, Any] = {**car_parameters(car), "system": APA_SYSTEM}
     vehicle |= {
@@ -102,8 +102,8 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
         "ultrasonic.dropout": 0.01,
         "ultrasonic.seed": case.number + 1 + SEED_STRIDE * case.lot,
     }
-    vehicle |= {"odometry.ideal": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
-    vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
+    vehicle |= {"odometry.ideal": False, "odometry.radius_error": draw.uniform(-0.005, 0.005), "odometry.tick": 0.02}
+    vehicle |= {"odometry.steering_offset": draw.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
     vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
     return vehicle | _scene(case, car.front_overhang + car.rear_overhang + car.wheelbase, car.width), controller
 
@@ -111,11 +111,11 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
 def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
     """Return two neighbours, behind a parallel slot a wall, and the start."""
     along, deep = (4.4, 1.8) if case.kind == ParkingType.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
-    things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
+    boxes = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
     if case.kind == ParkingType.PARALLEL:
-        things.append((-12.0, case.length + 12.0, -width - WALL_DISTANCE - 1.0, -width - WALL_DISTANCE))
+        boxes.append((-12.0, case.length + 12.0, -width - WALL_DISTANCE - 1.0, -width - WALL_DISTANCE))
     scene: dict[str, Any] = {}
-    for number, (x0, x1, y0, y1) in enumerate(things, start=1):
+    for number, (x0, x1, y0, y1) in enumerate(boxes, start=1):
         name = f"scene.boxes[{number}]."
         scene |= {name + "x": 0.5 * (x0 + x1), name + "y": 0.5 * (y0 + y1) * case.side}
         scene |= {name + "length": x1 - x0, name + "width": y1 - y0}

@@ -15,7 +15,7 @@ from orchestrator.studies.parking.cases import CARS
 
 ANGLES = (30, 45, 60, 90, 120, 135, 150)
 """Of a slot against the way of the car [deg]; 0: parallel."""
-NEIGHBOURS = ("straight", "crooked", "staggered", "pillars", "one")
+NEIGHBOURS = ("straight", "misaligned", "staggered", "pillars", "one")
 ENDS = ("open", "wall", "wheel stop", "shallow")
 STREETS = (5.5, 6.5, 9.0)
 SEED_STRIDE = 100_000
@@ -117,7 +117,7 @@ def boxes_of(case: DetectedSlotCase) -> list[Box]:
     """Return what stands around the slot on the right side, but for the street's other side."""
     length, width = size_of(case)
     place, draw = place_of(case), random.Random(case.number + SEED_STRIDE * case.lot + 17)
-    misalignment = math.radians(5.0) if case.neighbours == "crooked" else 0.0
+    misalignment = math.radians(5.0) if case.neighbours == "misaligned" else 0.0
     stagger = 0.25 if case.neighbours == "staggered" else 0.0
     post = 0.5 / math.sin(math.radians(case.angle)) if case.neighbours == "pillars" else 0.0
     next_one = (width + 0.7) / math.sin(math.radians(case.angle)) if case.angle else length + 0.8

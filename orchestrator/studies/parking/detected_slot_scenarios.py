@@ -49,7 +49,7 @@ def scenario_of(case: DetectedSlotCase, reported: bool = False) -> Scenario:
         "search.active": not reported,
         "slot.wanted": int(WANTED[case.wish]),
         "slot.open_ended": case.neighbours == "one",
-        "slot.distance": way_past(case).way,
+        "slot.distance": way_past(case).distance,
         "slot.stand_out": STAND_OUT,
     }
     if case.side < 0:
@@ -117,7 +117,7 @@ class WayPast(NamedTuple):
 
     x: float
     y: float
-    way: float
+    distance: float
 
 
 def way_past(case: DetectedSlotCase) -> WayPast:
@@ -127,18 +127,18 @@ def way_past(case: DetectedSlotCase) -> WayPast:
     place, boxes = place_of(case), [box_corners(box) for box in boxes_of(case)]
     first = min(x for x, _ in boxes[1]) - APPROACH_DISTANCE - front
     last = place.x + place.pitch if case.neighbours == "one" else max(x for x, _ in boxes[2])
-    way = (last + START_OFFSET - front - first) / math.cos(case.heading)
+    distance = (last + START_OFFSET - front - first) / math.cos(case.heading)
     t = math.tan(case.heading)
     row = [corner for box in boxes[:4] for corner in box if corner[0] < last + START_OFFSET + length]
     nearest = max(y - x * t for x, y in row)
-    return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
+    return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), distance)
 
 
 def _reach(case: DetectedSlotCase) -> float:
     """Return how far across the road the driver's way needs it to be free: the street is no narrower there."""
     past, car, width = way_past(case), CARS[case.car], size_of(case)[1]
     rise, half = math.sin(case.heading), 0.5 * width * math.cos(case.heading)
-    ends = (past.y - car.rear_overhang * rise, past.y + (past.way + car.wheelbase + car.front_overhang) * rise)
+    ends = (past.y - car.rear_overhang * rise, past.y + (past.distance + car.wheelbase + car.front_overhang) * rise)
     return max(ends) + half + AT_WALL
 
 

@@ -31,7 +31,7 @@ STREETS = (5.5, 6.5, 8.0, 0.0)
 """From the row's line to a wall across the road [m]; 0: none."""
 STAGGER = (-0.2, 0.3)
 """Neighbours stand further out than the car by this [m]."""
-ASKEW = math.radians(2.0)
+MAX_MISALIGNMENT = math.radians(2.0)
 WALL_THICKNESS = 1.0
 PASSES = ("nobody", "stands", "walks off")
 PERSON_WIDTH = 0.5
@@ -51,7 +51,7 @@ class PullOutCase(NamedTuple):
     """Room [m] between the neighbours beyond the car's length, or width."""
     share: float
     """Of the room behind the car, or on its right."""
-    askew: float
+    misalignment: float
     """Of the car against the row [rad]."""
     behind: str
     beside: float
@@ -86,7 +86,7 @@ def case_of(number: int, lot: int, people: bool) -> PullOutCase:
         body=draw.choice(("kinematic", "double_track")),
         extra=extra,
         share=draw.uniform(least, 1.0 - least),
-        askew=draw.uniform(-ASKEW, ASKEW),
+        misalignment=draw.uniform(-MAX_MISALIGNMENT, MAX_MISALIGNMENT),
         behind=behind if kind == ParkingType.PARALLEL or behind == "wall" else "nothing",
         beside=beside,
         street=draw.choice(STREETS),
@@ -109,12 +109,12 @@ def start_of(case: PullOutCase) -> tuple[float, float, float]:
     """Return where the rear axle of a car stands that comes out to the left: x, y, heading; its outer end at y = 0."""
     car = CARS[case.car]
     if case.kind == ParkingType.PARALLEL:
-        return case.share * case.extra + car.rear_overhang, -0.5 * car.width, case.askew
+        return case.share * case.extra + car.rear_overhang, -0.5 * car.width, case.misalignment
     x = case.share * case.extra + 0.5 * car.width
-    return x, -car.wheelbase - car.front_overhang, 0.5 * math.pi + case.askew
+    return x, -car.wheelbase - car.front_overhang, 0.5 * math.pi + case.misalignment
 
 
-def things_of(case: PullOutCase) -> dict[str, Footprint]:
+def footprints_of(case: PullOutCase) -> dict[str, Footprint]:
     """Return what stands there on the left: neighbours, what the slot ends at, the other side of the street."""
     car = CARS[case.car]
     across = case.kind == ParkingType.PERPENDICULAR
@@ -136,15 +136,15 @@ def things_of(case: PullOutCase) -> dict[str, Footprint]:
 
 def vehicle_of(case: PullOutCase) -> dict[str, Any]:
     """Return the parameters of the vehicle."""
-    things = things_of(case)
+    footprints = footprints_of(case)
     scene: dict[str, Any] = {}
     for number, name in enumerate(("first", "second", "wall", "across"), start=1):
-        thing = things.get(name, Footprint(0.0, 0.0, 0.0, 0.0))
-        box = {"x": 0.5 * (thing.x0 + thing.x1), "y": 0.5 * case.side * (thing.y0 + thing.y1)}
-        box |= {"length": thing.x1 - thing.x0, "width": thing.y1 - thing.y0}
+        footprint = footprints.get(name, Footprint(0.0, 0.0, 0.0, 0.0))
+        box = {"x": 0.5 * (footprint.x0 + footprint.x1), "y": 0.5 * case.side * (footprint.y0 + footprint.y1)}
+        box |= {"length": footprint.x1 - footprint.x0, "width": footprint.y1 - footprint.y0}
         scene |= {f"scene.boxes[{number}].{key}": value for key, value in box.items()}
-    if "kerb" in things:
-        kerb = things["kerb"]
+    if "kerb" in footprints:
+        kerb = footprints["kerb"]
         line = {"x1": kerb.x0, "y1": case.side * kerb.y0, "x2": kerb.x1, "y2": case.side * kerb.y1, "height": 0.12}
         scene |= {f"scene.kerbs[1].{key}": value for key, value in line.items()}
     scene |= {f"scene.boxes[5].{key}": value for key, value in _passer(case).items()}

@@ -12,11 +12,11 @@ from orchestrator.inputs.text.console import say
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.parking.cases import CARS
-from orchestrator.studies.parking.pull_out_cases import PullOutCase, start_of, things_of, vehicle_of
+from orchestrator.studies.parking.pull_out_cases import PullOutCase, footprints_of, start_of, vehicle_of
 from orchestrator.studies.parking.system_signals import APA_SYSTEM
 
 MIN_CLEARANCE = 0.05
-"""Clearance [m] of a way that counts, or as much as the car has where it stands."""
+"""Clearance [m] of a path that counts, or as much as the car has where it stands."""
 PLANNING_TIME = 5.0
 STEPS_PER_SAMPLE = 100
 """The planner has so much time [s], and so many steps of its search in each sample."""
@@ -61,15 +61,15 @@ def is_path(case: PullOutCase, goal: Pose) -> bool:
 def free_ahead(case: PullOutCase, end: Pose, most: float = 5.0) -> float:
     """Return how far [m] a car that ended at ``end`` (scene) could drive straight on past its neighbours, ``most``."""
     car, at = CARS[case.car], Pose(end.x, case.side * end.y, case.side * end.heading)
-    things = things_of(case)
+    footprints = footprints_of(case)
     row = [
         Box(0.5 * (item.x0 + item.x1), 0.5 * (item.y0 + item.y1), 0.0, item.x1 - item.x0, item.y1 - item.y0)
-        for item in (things["first"], things["second"])
+        for item in (footprints["first"], footprints["second"])
     ]
-    way = 0.0
-    while way < most and all(
-        boxes_gap(outline(at, car.wheelbase, car.front_overhang + way, car.rear_overhang, car.width), item) > 0.0
+    ahead = 0.0
+    while ahead < most and all(
+        boxes_gap(outline(at, car.wheelbase, car.front_overhang + ahead, car.rear_overhang, car.width), item) > 0.0
         for item in row
     ):
-        way += 0.1
-    return way
+        ahead += 0.1
+    return ahead

@@ -127,8 +127,9 @@ def report(table: Table, folder: Path) -> int:
         to.print(f"{count} not out: {reason}", highlight=False)
     touched, driven = sum(run.nearest <= 0.0 for run in found), sum(run.driven for run in found)
     early = sum(run.is_out and run.ahead < FREE_AHEAD for run in found)
-    out, ways = sum(run.is_out for run in found), sum(run.way for run in found)
-    text = f"{len(found)} runs, a way out of {ways}, {out} out ({100.0 * out / max(ways, 1):.1f} %), {touched} touched"
+    out, feasible = sum(run.is_out for run in found), sum(run.way for run in found)
+    share = f"{100.0 * out / max(feasible, 1):.1f} %"
+    text = f"{len(found)} runs, a way out of {feasible}, {out} out ({share}), {touched} touched"
     text += f" ({driven} while they drove)" if touched else ""
     to.print(f"{text}, {early} handed over too early", highlight=False)
     return 1 if driven or early else 0

@@ -63,8 +63,8 @@ def cases(lot: int = 0) -> list[RowCase]:
     """Return all cases."""
     everything = itertools.product(CARS, ANGLES, KINDS, STREETS, WIDER, WAYS)
     return [
-        RowCase(number, car, angle, kind, street, wider, *way, lot)
-        for number, (car, angle, kind, street, wider, way) in enumerate(everything)
+        RowCase(number, car, angle, kind, street, wider, *approach, lot)
+        for number, (car, angle, kind, street, wider, approach) in enumerate(everything)
     ]
 
 
@@ -101,7 +101,7 @@ def scenario_of(case: RowCase) -> Scenario:
 def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: float) -> dict[str, Any]:
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, turn = CARS[case.car], math.radians(case.angle)
-    lot = random.Random(5000 + case.number + SEED_STRIDE * case.lot)
+    draw = random.Random(5000 + case.number + SEED_STRIDE * case.lot)
     length = car_length(car)
     behind = depth * math.sin(turn) + 0.5 * (car.width + case.wider) * math.cos(turn) + 0.8
     boxes = [
@@ -114,11 +114,11 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     }
     side = -1.0 if (case.where == "before") == (case.direction > 0) else 1.0
     start = {
-        "start.x": 0.5 * opening + side * START_DISTANCE + lot.uniform(-1.0, 1.0),
-        "start.y": 0.5 * case.street + lot.uniform(-0.2, 0.2),
-        "start.heading": (0.0 if case.direction > 0 else math.pi) + lot.uniform(-0.07, 0.07),
+        "start.x": 0.5 * opening + side * START_DISTANCE + draw.uniform(-1.0, 1.0),
+        "start.y": 0.5 * case.street + draw.uniform(-0.2, 0.2),
+        "start.heading": (0.0 if case.direction > 0 else math.pi) + draw.uniform(-0.07, 0.07),
     }
-    errors = imperfect(case.number + 1 + SEED_STRIDE * case.lot, lot)
+    errors = imperfect(case.number + 1 + SEED_STRIDE * case.lot, draw)
     return {**car_parameters(car), **scene, **start, **errors}
 
 

@@ -182,7 +182,7 @@ def _overhang(f: F, found: F, swept: DriverPass) -> dict[str, Array]:
 def _mover_stops(f: F, found: F, rows: Boxes, swept: DriverPass) -> dict[str, Array]:
     """Return when neighbours move: along a row up to the next car or pillar, out of one once the driver has passed."""
     times: dict[str, Array] = {}
-    parallel, travel = f["kind"] == 0, f["mover_way"]
+    parallel, travel = f["kind"] == 0, f["mover_travel"]
     moved = np.abs(travel)
     for which, number in NEIGHBOUR.items():
         low, high = _neighbour_extent(f, found, which, "x")
@@ -207,7 +207,7 @@ def _walking_space(f: F, found: F, rows: Boxes, surroundings: Boxes, slot: Array
     for which, towards in (("a", -1.0), ("b", 1.0)):
         low, high = _neighbour_extent(f, found, which, "x")
         outer = low if which == "a" else high
-        nearest = outer + towards * (np.abs(f["mover_way"]) * (f["mover"] >= NOBODY) + HALF_ROOM)
+        nearest = outer + towards * (np.abs(f["mover_travel"]) * (f["mover"] >= NOBODY) + HALF_ROOM)
         place = nearest
         for box in ROWS[which]:
             there = rows[box]["length"] > 0.0

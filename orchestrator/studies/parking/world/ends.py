@@ -112,8 +112,8 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
     """
     if row.get("mover", 0) < NOBODY:
         return False
-    way = math.copysign(min(abs(row["mover_way"]), _neighbour_travel(row)), row["mover_way"])
-    margin = row["final.outline_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
+    travel = math.copysign(min(abs(row["mover_travel"]), _neighbour_travel(row)), row["mover_travel"])
+    margin = row["final.outline_margin"] + max(0.0, -travel) if row["kind"] == 0 else _margin(row, 0.5 * travel)
     turned, aside, out, manoeuvres = _limits_of(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
     near = heading <= turned and lateral <= aside and margin >= -out
@@ -144,12 +144,12 @@ def _neighbour_travel(row: Mapping[str, Any]) -> float:
 def first_contact(row: Mapping[str, Any]) -> InitialContact:
     """Return what the car is nearest to when it touches something for the first time."""
     pose = Pose(*(row[f"touched.{axis}"] for axis in AXES))
-    things = _things(row)
-    name = min(things, key=lambda name: _gap(row, pose, *things[name]))
-    way = row["touched.speed"] * row["step"]
-    before = Pose(pose.x - way * math.cos(pose.heading), pose.y - way * math.sin(pose.heading), pose.heading)
+    obstacles = _obstacles(row)
+    name = min(obstacles, key=lambda name: _gap(row, pose, *obstacles[name]))
+    travel = row["touched.speed"] * row["step"]
+    before = Pose(pose.x - travel * math.cos(pose.heading), pose.y - travel * math.sin(pose.heading), pose.heading)
     return InitialContact(
-        name, name in MOVABLE_OBSTACLES and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0
+        name, name in MOVABLE_OBSTACLES and _is_moving(row, name) and _gap(row, before, *obstacles[name]) <= 0.0
     )
 
 
@@ -168,7 +168,7 @@ GROUND_CLEARANCE = SceneParams().ground_clearance
 """Kerbs lower than this [m] pass under the bumpers."""
 
 
-def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
+def _obstacles(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
     """Return what stands there as the car touches something, and whether it is under the bumpers."""
     boxes = [Obstacle(**{name: row.get(f"{_box(n)}.{name}", start) for name, start in EMPTY.items()}) for n in BOXES]
     time_ns = round(row["touched.time"] * 1e9)
@@ -195,10 +195,10 @@ def _is_moving(row: Mapping[str, Any], name: str) -> bool:
     return bool(moves and (row.get(f"{box}.speed_x", 0.0) or row[f"{box}.speed_y"]))
 
 
-def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
+def _gap(row: Mapping[str, Any], pose: Pose, obstacle: Box, under: bool) -> float:
     wheelbase, front, rear, width = (row[key] for key in CAR_KEYS)
     front, rear = (WHEEL, WHEEL) if under else (front, rear)
-    return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
+    return boxes_gap(outline(pose, wheelbase, front, rear, width), obstacle)
 
 
 def _clear(columns: Columns) -> Array:

@@ -64,7 +64,7 @@ EVENTS = (
     Factor("person_place", "1", -0.5, 1.5, 1.5, "where, as a share of the slot's length; outside it between cars"),
     Factor("mover", "1", 0, 0, 5, "a moving neighbour, along itself", (*("none",) * 4, "first", "second")),
     Factor("mover_at", "s", 5.0, 60.0, 60.0, "when"),
-    Factor("mover_way", "m", -1.0, 0.0, 1.0, "how far, positive into a parallel slot, out of a perpendicular row"),
+    Factor("mover_travel", "m", -1.0, 0.0, 1.0, "how far, positive into a parallel slot, out of a perpendicular row"),
     Factor("mover_speed", "m/s", 0.2, 0.2, 1.0, "how fast"),
     Factor("lost", "1", 0, 0, 9, "a sensor fails", (*("none",) * 8, "hears nothing", "says nothing")),
     Factor("lost_sensor", "1", 0, 0, 11, "which", tuple(map(str, range(1, 13)))),

@@ -59,9 +59,9 @@ def is_possible(columns: Columns) -> Array:
     through the slot itself, who looks at nothing.
     """
     f = {name: np.asarray(columns[name]) for name in NEEDED}
-    narrowed = (f["mover"] >= NOBODY) & (f["kind"] != PERPENDICULAR_KIND) & (f["mover_way"] > f["extra"])
+    narrowed = (f["mover"] >= NOBODY) & (f["kind"] != PERPENDICULAR_KIND) & (f["mover_travel"] > f["extra"])
     walked = (f["person"] >= NOBODY) & crosses_slot(f["person_place"])
     return np.asarray((f["speed"] <= MAX_SEARCH_SPEED) & (f["lost"] < NO_SENSOR) & ~narrowed & ~walked)
 
 
-NEEDED = ("speed", "lost", "mover", "mover_way", "kind", "extra", "person", "person_place")
+NEEDED = ("speed", "lost", "mover", "mover_travel", "kind", "extra", "person", "person_place")

@@ -255,15 +255,15 @@ def crosses_slot(place: Array) -> NDArray[np.bool_]:
 def _mover(f: F, size: F) -> dict[str, Array]:
     """Return how a neighbour moves: along the road in a parallel row, across it in a perpendicular one."""
     found: dict[str, Array] = {}
-    way, speed = f["mover_way"], f["mover_speed"]
+    travel, speed = f["mover_travel"], f["mover_speed"]
     for number, towards in ((1, 1.0), (2, -1.0)):
         moves = f["mover"] == NOBODY + number - 1
-        along = np.where(moves, np.sign(way) * speed, 0.0)
+        along = np.where(moves, np.sign(travel) * speed, 0.0)
         box = {
             "speed_x": np.where(size["parallel"], towards * along, 0.0),
             "speed_y": np.where(size["parallel"], 0.0, size["sign"] * along),
             "moves_at": f["mover_at"],
-            "halts_at": f["mover_at"] + np.abs(way) / speed,
+            "halts_at": f["mover_at"] + np.abs(travel) / speed,
         }
         found |= {f"scene.boxes[{number}].{name}": values for name, values in box.items()}
     return found

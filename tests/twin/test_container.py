@@ -32,13 +32,14 @@ from tests.twin.test_same_bits import same
 from vehicle_fmu import MODEL as VEHICLE
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
-SCENARIOS = ("guo2015-case4-105", "apa-parallel")
+SCENARIOS = ("guo2015-case4-105",)
 MORE_SCENARIOS = (
+    "apa-parallel",
     *("guo2015-case1", "guo2015-case2", "zhang2022-double-track", "hsic-shuffle", "preview-18"),
     *("apa-perpendicular-left", "apa-takeover", "apa-no-slot", "adaptive", "valet-parallel"),
 )
 CASE = load_scenario("guo2015-case4-105", [])
-FMI_3 = pytest.mark.release
+COMPILES = pytest.mark.release
 """Compiles a second container; ``tests/fmi/test_fmi3_fmu.py`` has the calls, ``test_same_bits`` the bits of FMI 3.0."""
 STEP = 10_000_000
 FIRST_NS = 21_000_000_000
@@ -86,7 +87,10 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) ->
 
 
 @pytest.mark.parametrize("milliseconds", [1, 2, 3, 7])
-@pytest.mark.parametrize("name", [*SCENARIOS, pytest.param("valet-parallel", marks=pytest.mark.release)])
+@pytest.mark.parametrize(
+    "name",
+    [*SCENARIOS, *(pytest.param(name, marks=pytest.mark.release) for name in ("apa-parallel", "valet-parallel"))],
+)
 def test_its_exchanges_are_exact_at_any_communication_step(name: Any, milliseconds: int) -> None:
     scenario = load_scenario(name, [])
     model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
@@ -122,7 +126,7 @@ def test_the_container_of_fmi_2_gives_them(recording: Any) -> None:
     assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
 
 
-@FMI_3
+@COMPILES
 def test_the_container_of_fmi_3_gives_them(recording: Any, tmp_path: Path) -> None:
     model = one_model(CASE)
     params = np.array(flatten(model.first_params()), dtype=float)
@@ -173,7 +177,7 @@ def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits() -> Non
 # What an importer sees
 
 
-@pytest.mark.parametrize("fmi", [2, pytest.param(3, marks=FMI_3)])
+@pytest.mark.parametrize("fmi", [2, pytest.param(3, marks=COMPILES)])
 def test_checkers_find_nothing(fmi: int) -> None:
     assert problems_of(container(fmi)) == []
     command = [str(Path(sys.executable).parent / "fmutool"), "-input", str(container(fmi)), "-check"]

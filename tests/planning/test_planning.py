@@ -12,9 +12,10 @@ from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
+from controller_fmu.parking.planning.grids import UNREACHABLE_COST
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
-from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.reeds_shepp import least_word_cost, list_words, turn_of
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
 from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork
 from modelkit.store import new_store, size_of
@@ -54,17 +55,48 @@ def test_every_word_ends_where_it_should() -> None:
     problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
-        count = list_words(store, ORIGIN, end, 0.0, 0.0, problem)
+        count = list_words(store, ORIGIN, end, 0.0, 0.0, UNREACHABLE_COST, problem)
         assert 32 <= count <= MAX_WORDS
         for word in range(count):
             pose = ORIGIN
             for piece in range(5):
-                turn = store.word_code[word] // 3**piece % 3 - 1
+                turn = turn_of(store.word_code[word], piece) - 1
                 pose = pose_along_arc(pose, word_length(store, word, piece), turn * CAR.max_curvature)
             assert math.hypot(pose.x - end.x, pose.y - end.y) < 1e-4
             assert abs(math.remainder(pose.heading - end.heading, 2.0 * math.pi)) < 1e-5
         least = sum(abs(word_length(store, cheapest_word(store, count), piece)) for piece in range(5))
         assert least >= math.hypot(end.x, end.y) - 1e-9
+
+
+def test_words_that_cost_too_much_are_left_out_and_no_others() -> None:
+    draw = random.Random(3)
+    store = new_store(PlanningWork)
+    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
+    problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
+    for _ in range(200):
+        reach = draw.choice((1.0, 4.0, 12.0))
+        end = Pose(
+            draw.uniform(-reach, reach), draw.uniform(-reach, reach), draw.choice((0.0, draw.uniform(-6.0, 6.0)))
+        )
+        gear, lock = draw.choice((-1.0, 0.0, 1.0)), draw.choice((-1.0, -0.5, 0.0, 0.5, 1.0))
+        words = _words(store, end, gear, lock, UNREACHABLE_COST, problem)
+        least = min(words)
+        assert least_word_cost(store, ORIGIN, end, gear, lock, UNREACHABLE_COST, problem) == least[0]
+        limit = draw.choice(words)[0]
+        assert _words(store, end, gear, lock, limit, problem) == [word for word in words if word[0] < limit]
+        cheapest = least_word_cost(store, ORIGIN, end, gear, lock, limit, problem)
+        assert cheapest == min(limit, least[0])
+
+
+def _words(
+    store: PlanningWork, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
+) -> list[tuple[float, ...]]:
+    """Return cost, turns and lengths of the words from the origin to ``end``."""
+    count = list_words(store, ORIGIN, end, gear, lock, limit, problem)
+    return [
+        (store.word_cost[word], store.word_code[word], *(word_length(store, word, piece) for piece in range(5)))
+        for word in range(count)
+    ]
 
 
 def test_parks_between_two_boxes_with_the_margin_it_states() -> None:

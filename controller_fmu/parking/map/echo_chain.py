@@ -114,9 +114,8 @@ def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoCh
     if chain.used >= MAX_ECHOES:
         chain = _thin(chain)
     echo = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
-    at = chain.used
-    echoes = tuple(echo if number == at else chain.echoes[number] for number in range(MAX_ECHOES))
-    return chain._replace(used=at + 1, echoes=echoes)
+    at = min(max(chain.used, 0), MAX_ECHOES - 1)
+    return chain._replace(used=at + 1, echoes=chain.echoes[:at] + (echo,) + chain.echoes[at + 1 :])
 
 
 def without_echoes_before(chain: EchoChain, first: int) -> EchoChain:

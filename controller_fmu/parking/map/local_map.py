@@ -16,7 +16,12 @@ from controller_fmu.parking.map.chain_update import (
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
-from controller_fmu.parking.map.oblique_side import ConeBoundaries, ObliqueUpdate, update_oblique_sides
+from controller_fmu.parking.map.oblique_side import (
+    CONE_BOUNDARIES,
+    ConeBoundaries,
+    index_of_side,
+    update_oblique_sides,
+)
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.visibility import (
@@ -117,24 +122,41 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
     """Return the map after a reading of a sensor on a flank, which passes sides: chains of echoes."""
     at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
     reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
-    before = local_map.boundaries
-    oblique = update_oblique_sides(ObliqueUpdate(local_map.landmarks, before[at]), reading, params)
+    oblique = update_oblique_sides(local_map.boundaries[at], reading)
     local_map = local_map._replace(
-        landmarks=oblique.landmarks, boundaries=before[:at] + (oblique.boundaries,) + before[at + 1 :]
+        boundaries=local_map.boundaries[:at] + (oblique.boundaries,) + local_map.boundaries[at + 1 :]
     )
+    for boundary in range(CONE_BOUNDARIES):
+        index = index_of_side(local_map.landmarks, oblique.passed[boundary], params)
+        if index >= 0:
+            local_map = with_landmark(local_map, index, oblique.passed[boundary])
     event = chain_event(local_map.chains[at], reading)
-    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], reading, event)
-    fits = is_fit_due(chain, reading)
-    if not oblique.is_oblique and (fits or event != ChainEvent.CONTINUES):
+    if not oblique.is_oblique and event != ChainEvent.CONTINUES:
+        ended = ChainUpdate(local_map.landmarks, local_map.chains[at])
+        ended = finish_chain(ended, reading, event == ChainEvent.ENDS_AT_EDGE, params)
+        local_map = local_map._replace(landmarks=ended.landmarks)
+    if oblique.is_oblique:
+        local_map = local_map._replace(chains=local_map.chains[:at] + (EchoChain(),) + local_map.chains[at + 1 :])
+    else:
+        local_map = local_map._replace(
+            chains=local_map.chains[:at]
+            + (next_chain(local_map.chains[at], reading, event),)
+            + local_map.chains[at + 1 :]
+        )
+    if is_fit_due(local_map.chains[at], reading):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
-        if event != ChainEvent.CONTINUES:
-            update = finish_chain(update, reading, event == ChainEvent.ENDS_AT_EDGE, params)
-        update = update._replace(chain=chain)
-        if fits:
-            update = fit_chain(update, reading, False, params)
-        chain = update.chain
-        local_map = local_map._replace(landmarks=update.landmarks)
-    return local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
+        update = fit_chain(update, reading, False, params)
+        local_map = local_map._replace(
+            landmarks=update.landmarks,
+            chains=local_map.chains[:at] + (update.chain,) + local_map.chains[at + 1 :],
+        )
+    return local_map
+
+
+def with_landmark(local_map: LandmarkMap, index: int, landmark: Landmark) -> LandmarkMap:
+    """Return the map with the landmark at ``index`` replaced."""
+    at = min(max(index, 0), MAX_LANDMARKS - 1)
+    return local_map._replace(landmarks=local_map.landmarks[:at] + (landmark,) + local_map.landmarks[at + 1 :])
 
 
 def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
@@ -180,9 +202,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
                 is_missed = is_missed or (not is_echo and is_permanent(landmark))
                 if is_credible:
                     after = contradict(landmark, predict_range(sensor, landmark), params)
-            local_map = local_map._replace(
-                landmarks=local_map.landmarks[:number] + (after,) + local_map.landmarks[number + 1 :]
-            )
+            local_map = with_landmark(local_map, number, after)
     missed = count_missed_echo(local_map.missed, measurement.number, measurement.status, is_missed)
     return local_map._replace(missed=missed)
 

@@ -12,14 +12,12 @@ from typing import NamedTuple
 
 from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
 from controller_fmu.parking.map.landmark import (
-    MAX_LANDMARKS,
     Landmark,
     LandmarkType,
     along_of,
     free_index,
     offset_of,
     offset_variance,
-    replace_landmark,
 )
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
@@ -86,16 +84,18 @@ class ConeBoundaries(NamedTuple):
 
 
 class ObliqueUpdate(NamedTuple):
-    """Landmarks and the boundaries of a sensor's cone after a reading."""
+    """The boundaries of a sensor's cone after a reading, and the sides that have been passed."""
 
-    landmarks: tuple[Landmark, ...] = (Landmark(),) * MAX_LANDMARKS
     boundaries: ConeBoundaries = ConeBoundaries()
+    passed: tuple[Landmark, ...] = (Landmark(),) * CONE_BOUNDARIES
+    """Type NONE: none, at that boundary."""
     is_oblique: bool = False
     """The echo is of such a side: of no foot or corner."""
 
 
-def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: MappingParams) -> ObliqueUpdate:
-    """Return landmarks and runs after a reading of a sensor on a flank; a side is mapped once it has been passed."""
+def update_oblique_sides(boundaries: ConeBoundaries, reading: SideReading) -> ObliqueUpdate:
+    """Return the runs after a reading of a sensor on a flank, and the sides that are to be mapped: those passed."""
+    update = ObliqueUpdate(boundaries)
     for boundary in range(CONE_BOUNDARIES):
         runs = update.boundaries.runs
         run = runs[boundary]
@@ -105,8 +105,7 @@ def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: Ma
         if over:
             ends = side_ending(run.range, reading.range)
             side = side_of(run, reading.sensor, turn, ends, reading.variance)
-            if side.type != LandmarkType.NONE:
-                update = update._replace(landmarks=put_side(update.landmarks, side, params))
+            update = update._replace(passed=update.passed[:boundary] + (side,) + update.passed[boundary + 1 :])
         run = next_run(run, reading.status, point, reading.range, over)
         now = side_of(run, reading.sensor, turn, int(SideEnding.HIDDEN), reading.variance)
         update = update._replace(
@@ -116,12 +115,14 @@ def update_oblique_sides(update: ObliqueUpdate, reading: SideReading, params: Ma
     return update
 
 
-def put_side(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingParams) -> tuple[Landmark, ...]:
-    """Return the landmarks with a new side, unless one of them is the same and known better."""
+def index_of_side(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingParams) -> int:
+    """Return the place of the map for a new side; -1: a landmark is the same and known better, or there is no side."""
+    if new.type == LandmarkType.NONE:
+        return -1
     other = same_side(landmarks, new, -1, params)
-    if other >= 0 and is_better(landmarks[other], new):
-        return landmarks
-    return replace_landmark(landmarks, other if other >= 0 else free_index(landmarks), new)
+    if other < 0:
+        return free_index(landmarks)
+    return -1 if is_better(landmarks[other], new) else other
 
 
 def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:

@@ -3,8 +3,14 @@
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
+from controller_fmu.parking.planning.reeds_shepp import turn_of
 from controller_fmu.parking.planning.search_tree import set_best
-from controller_fmu.parking.planning.work import NO_INDEX, PlanCount, PlanningWork, PlanValue, discard_word
+from controller_fmu.parking.planning.work import (
+    NO_INDEX,
+    PlanningWork,
+    PlanValue,
+    discard_word,
+)
 from modelkit.vocabulary import Pose
 
 MAX_LENGTH = 10.0
@@ -13,28 +19,25 @@ MAX_TRIES = 8
 
 
 def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int, problem: SearchProblem) -> None:
-    """Try the cheapest words from a node to the target; keep the first free one if it is the best yet."""
-    tries = 0
-    while tries < MAX_TRIES:
+    """Try the cheapest of so many words from a node to the target; keep the first that is free."""
+    for word in range(words):
+        if not _ends_free(work, word):
+            discard_word(work, word)
+    for _ in range(MAX_TRIES):
         word = cheapest_word(work, words)
-        cost = work.node_cost[node] + work.word_cost[word]
-        if work.word_cost[word] > 1e8 or (
-            work.counts[PlanCount.BEST_NODE] != NO_INDEX and cost >= work.values[PlanValue.BEST_COST]
-        ):
+        if word == NO_INDEX:
             return
-        if _ends_free(work, word):
-            tries += 1
-            if is_word_collision_free(work, word, pose, problem):
-                set_best(work, node, word, cost)
-                return
+        if is_word_collision_free(work, word, pose, problem):
+            set_best(work, node, word, work.node_cost[node] + work.word_cost[word])
+            return
         discard_word(work, word)
 
 
 def cheapest_word(work: PlanningWork, words: int) -> int:
-    """Return the index of the word of least cost among the first ``words``."""
-    best = 0
-    least = work.word_cost[0]
-    for word in range(1, words):
+    """Return the index of the word of least cost among the first ``words``; ``NO_INDEX`` if none is left."""
+    best = NO_INDEX
+    least = 1e9
+    for word in range(words):
         cost = work.word_cost[word]
         if cost < least:
             best = word
@@ -55,14 +58,12 @@ def word_length(work: PlanningWork, word: int, segment: int) -> float:
 
 def _ends_free(work: PlanningWork, word: int) -> bool:
     """Return whether the first and the last segment of a word fit what is free at the node and at the target."""
-    rest = work.word_code[word]
     first = True
     last = 0.0
     last_turn = 0
     for segment in range(5):
         distance = word_length(work, word, segment)
-        turn = rest % 3
-        rest = rest // 3
+        turn = turn_of(work.word_code[word], segment)
         if distance != 0.0:
             if first:
                 free = work.values[PlanValue.FREE_AT_NODE + (5 if distance > 0.0 else 0) + 2 * turn]
@@ -76,12 +77,10 @@ def _ends_free(work: PlanningWork, word: int) -> bool:
 
 def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:
     """Return whether the car can drive a word from ``pose``."""
-    rest = work.word_code[word]
     gap = clearance(work, pose, problem) - problem.margin
     for segment in range(5):
         distance = word_length(work, word, segment)
-        k = (rest % 3 - 1) * problem.car.max_curvature
-        rest = rest // 3
+        k = (turn_of(work.word_code[word], segment) - 1) * problem.car.max_curvature
         if distance != 0.0:
             driven = sweep_arc(work, pose, gap, distance, k, problem)
             if driven.distance < abs(distance):

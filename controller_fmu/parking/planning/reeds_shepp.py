@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
-from controller_fmu.parking.planning.work import PlanningWork, set_word
+from controller_fmu.parking.planning.work import PlanningWork, PlanValue, set_word
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -26,12 +26,17 @@ MIN_WORD_LENGTH = 1e-6
 
 
 def word_code(a: int, b: int, c: int, d: int, e: int) -> int:
-    """Return the turns of five segments (``LEFT_TURN``, ``STRAIGHT_LINE``, ``RIGHT_TURN``) as one number."""
-    return a + 3 * (b + 3 * (c + 3 * (d + 3 * e)))
+    """Return five turns (``LEFT_TURN``, ``STRAIGHT_LINE``, ``RIGHT_TURN``) as one number of two bits each."""
+    return a + 4 * (b + 4 * (c + 4 * (d + 4 * e)))
 
 
-class ArrivalState(NamedTuple):
-    """How the car comes to the start of a word: what the first change of direction and of the wheel are priced by."""
+def turn_of(code: int, segment: int) -> int:
+    """Return the turn of a segment (0 to 4) of a word."""
+    return (code >> 2 * segment) & 3
+
+
+class WordChoice(NamedTuple):
+    """Which words are listed, and how the car comes to their start: what its first changes are priced by."""
 
     gear: float
     """1.0, -1.0; 0.0: none."""
@@ -39,6 +44,18 @@ class ArrivalState(NamedTuple):
     """-1.0 to 1.0."""
     radius: float
     """Of the smallest circle [m]."""
+    only_cheaper: bool
+    """Each word costs less than those before; else all that cost less than the limit are listed."""
+
+
+class WordEnd(NamedTuple):
+    """The pose at a word's end, seen from its start, in radii, with sine and cosine of its heading."""
+
+    x: float
+    y: float
+    heading: float
+    sin: float
+    cos: float
 
 
 class WordSymmetry(NamedTuple):
@@ -50,12 +67,28 @@ class WordSymmetry(NamedTuple):
     """1.0, or -1.0: each segment in the other direction of travel."""
 
 
-def list_words(work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, problem: SearchProblem) -> int:
-    """List the words from ``start`` to ``end`` with their costs [m] in ``work``; returns how many.
+def list_words(
+    work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
+) -> int:
+    """List the words from ``start`` to ``end`` that cost less than ``limit`` [m] in ``work``; returns how many.
 
     ``gear`` (1.0, -1.0; 0.0: none) and ``lock`` (-1.0 to 1.0) are those with which the car arrives at
     ``start``: its direction, and its curvature over the largest.
     """
+    work.values[PlanValue.WORD_LIMIT] = limit
+    return _list_words(work, start, end, WordChoice(gear, lock, 1.0 / problem.car.max_curvature, False), problem)
+
+
+def least_word_cost(
+    work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
+) -> float:
+    """Return the cost [m] of the cheapest word, or ``limit`` if that is less; arguments as in ``list_words``."""
+    work.values[PlanValue.WORD_LIMIT] = limit
+    count = _list_words(work, start, end, WordChoice(gear, lock, 1.0 / problem.car.max_curvature, True), problem)
+    return work.word_cost[count - 1] if count > 0 else limit
+
+
+def _list_words(work: PlanningWork, start: Pose, end: Pose, choice: WordChoice, problem: SearchProblem) -> int:
     k = problem.car.max_curvature
     cos = math.cos(start.heading)
     sin = math.sin(start.heading)
@@ -64,138 +97,158 @@ def list_words(work: PlanningWork, start: Pose, end: Pose, gear: float, lock: fl
     x = dx * cos + dy * sin
     y = dy * cos - dx * sin
     h = end.heading - start.heading
-    arrival = ArrivalState(gear, lock, 1.0 / k)
+    sin_h = math.sin(h)
+    cos_h = math.cos(h)
     count = 0
     for side in range(2):
         mirror = 1.0 if side == 0 else -1.0
         left = LEFT_TURN if side == 0 else RIGHT_TURN
         right = RIGHT_TURN if side == 0 else LEFT_TURN
-        goal = Pose(x, y * mirror, h * mirror)
-        count = _three_pieces(work, count, goal, WordSymmetry(left, right, 1.0), arrival)
+        goal = WordEnd(x, y * mirror, h * mirror, sin_h * mirror, cos_h)
+        count = _three_pieces(work, count, goal, WordSymmetry(left, right, 1.0), choice)
         for distance in range(2):
             time = 1.0 if distance == 0 else -1.0
-            goal = Pose(x * time, y * mirror, h * mirror * time)
-            count = _more_pieces(work, count, goal, WordSymmetry(left, right, time), arrival)
+            goal = WordEnd(x * time, y * mirror, h * mirror * time, sin_h * mirror * time, cos_h)
+            count = _more_pieces(work, count, goal, WordSymmetry(left, right, time), choice)
     return count
 
 
-def _three_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetry, arrival: ArrivalState) -> int:
+def _is_too_long(work: PlanningWork, length: float, choice: WordChoice) -> bool:
+    """Return whether a word at least so long costs more than the limit, even without segments that are left out."""
+    return (length - 5.0 * MIN_WORD_LENGTH) * choice.radius >= work.values[PlanValue.WORD_LIMIT]
+
+
+def _three_pieces(work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, choice: WordChoice) -> int:
     """List LSL, LSR and LRL, or their mirror images."""
     h = goal.heading
-    sx = goal.x - math.sin(h)
-    sy = goal.y - 1.0 + math.cos(h)
+    sx = goal.x - goal.sin
+    sy = goal.y - 1.0 + goal.cos
     apart = math.sqrt(sx * sx + sy * sy)
-    towards = math.atan2(sy, sx)
-    code = word_code(image.left, STRAIGHT_LINE, image.left, UNUSED_PIECE, UNUSED_PIECE)
-    count = _arcs(work, count, code, (towards, apart, h - towards), arrival)
-    count = _arcs(work, count, code, (towards + PI, -apart, h - towards - PI), arrival)
-    if apart <= 4.0:
-        code = word_code(image.left, image.right, image.left, UNUSED_PIECE, UNUSED_PIECE)
-        open_by = math.acos(0.25 * apart)
-        for side in range(2):
-            b = open_by if side == 0 else -open_by
-            # from centre to centre: towards + b, then towards - b
-            first = towards + b + 0.5 * PI
-            second = towards - b - 0.5 * PI
-            u = wrap_angle(first - second)
-            count = _arcs(work, count, code, (first, u, h - second), arrival)
-            other = u - TWO_PI if u > 0.0 else u + TWO_PI
-            count = _arcs(work, count, code, (first, other, h - second), arrival)
-    sx = goal.x + math.sin(h)
-    sy = goal.y - 1.0 - math.cos(h)
+    # on the arc between two others the centre of their circles moves by 2 for each radian
+    if not _is_too_long(work, apart if apart > 4.0 else 0.5 * apart, choice):
+        towards = math.atan2(sy, sx)
+        code = word_code(image.left, STRAIGHT_LINE, image.left, UNUSED_PIECE, UNUSED_PIECE)
+        count = _arcs(work, count, code, (towards, apart, h - towards), choice)
+        count = _arcs(work, count, code, (towards + PI, -apart, h - towards - PI), choice)
+        if apart <= 4.0:
+            code = word_code(image.left, image.right, image.left, UNUSED_PIECE, UNUSED_PIECE)
+            open_by = math.acos(0.25 * apart)
+            for side in range(2):
+                b = open_by if side == 0 else -open_by
+                # from centre to centre: towards + b, then towards - b
+                first = towards + b + 0.5 * PI
+                second = towards - b - 0.5 * PI
+                u = wrap_angle(first - second)
+                count = _arcs(work, count, code, (first, u, h - second), choice)
+                other = u - TWO_PI if u > 0.0 else u + TWO_PI
+                count = _arcs(work, count, code, (first, other, h - second), choice)
+    sx = goal.x + goal.sin
+    sy = goal.y - 1.0 - goal.cos
     square = sx * sx + sy * sy
-    if square >= 4.0:
+    line = math.sqrt(max(square - 4.0, 0.0))
+    if square >= 4.0 and not _is_too_long(work, line, choice):
         code = word_code(image.left, STRAIGHT_LINE, image.right, UNUSED_PIECE, UNUSED_PIECE)
-        line = math.sqrt(square - 4.0)
         towards = math.atan2(sy, sx)
         along = towards + math.atan2(2.0, line)
-        count = _arcs(work, count, code, (along, line, along - h), arrival)
+        count = _arcs(work, count, code, (along, line, along - h), choice)
         along = towards + math.atan2(2.0, -line)
-        count = _arcs(work, count, code, (along, -line, along - h), arrival)
+        count = _arcs(work, count, code, (along, -line, along - h), choice)
     return count
 
 
-def _arcs(work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float], arrival: ArrivalState) -> int:
+def _arcs(work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float], choice: WordChoice) -> int:
     """List a word of three segments with each outer arc driven forward, or in reverse the other way round."""
     t = wrap_angle(lengths[0])
     u = lengths[1]
     v = wrap_angle(lengths[2])
+    if _is_too_long(work, abs(t) + abs(u) + abs(v), choice):
+        return count
     t_other = t - TWO_PI if t > 0.0 else t + TWO_PI
     v_other = v - TWO_PI if v > 0.0 else v + TWO_PI
-    count = _add(work, count, code, (t, u, v, 0.0, 0.0), arrival)
-    count = _add(work, count, code, (t_other, u, v, 0.0, 0.0), arrival)
-    count = _add(work, count, code, (t, u, v_other, 0.0, 0.0), arrival)
-    return _add(work, count, code, (t_other, u, v_other, 0.0, 0.0), arrival)
+    count = _add(work, count, code, (t, u, v, 0.0, 0.0), choice)
+    count = _add(work, count, code, (t_other, u, v, 0.0, 0.0), choice)
+    count = _add(work, count, code, (t, u, v_other, 0.0, 0.0), choice)
+    return _add(work, count, code, (t_other, u, v_other, 0.0, 0.0), choice)
 
 
-def _more_pieces(work: PlanningWork, count: int, goal: Pose, image: WordSymmetry, arrival: ArrivalState) -> int:
+def _more_pieces(work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, choice: WordChoice) -> int:
     """List words of four and five segments: CCCC, CCSC, CSCC and CCSCC, equations 8.7 to 8.11 of the source."""
     h = goal.heading
     time = image.time
-    px = goal.x + math.sin(h)
-    py = goal.y - 1.0 - math.cos(h)
+    px = goal.x + goal.sin
+    py = goal.y - 1.0 - goal.cos
     square = px * px + py * py
     rho = 0.25 * (2.0 + math.sqrt(square))
     code = word_code(image.left, image.right, image.left, image.right, UNUSED_PIECE)
     if rho <= 1.0:
         u = math.acos(rho)
-        t = _first_of_four(u, -u, px, py)
-        v = wrap_angle(t - 2.0 * u - h)
-        count = _add(work, count, code, (time * t, time * u, -time * u, time * v, 0.0), arrival)
+        if not _is_too_long(work, 2.0 * u, choice):
+            t = _first_of_four(u, -u, px, py)
+            v = wrap_angle(t - 2.0 * u - h)
+            count = _add(work, count, code, (time * t, time * u, -time * u, time * v, 0.0), choice)
     rho = (20.0 - square) / 16.0
     if 0.0 <= rho <= 1.0:
         u = -math.acos(rho)
-        t = _first_of_four(u, u, px, py)
-        v = wrap_angle(t - h)
-        count = _add(work, count, code, (time * t, time * u, time * u, time * v, 0.0), arrival)
+        if not _is_too_long(work, -2.0 * u, choice):
+            t = _first_of_four(u, u, px, py)
+            v = wrap_angle(t - h)
+            count = _add(work, count, code, (time * t, time * u, time * u, time * v, 0.0), choice)
     if square >= 4.0:
         u = 4.0 - math.sqrt(square - 4.0)
-        if u <= 0.0:
+        if u <= 0.0 and not _is_too_long(work, PI - u, choice):
             t = wrap_angle(math.atan2((4.0 - u) * px - 2.0 * py, -2.0 * px + (u - 4.0) * py))
             v = wrap_angle(t - h)
             q = -0.5 * PI * time
             code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, image.right)
-            count = _add(work, count, code, (time * t, q, time * u, q, time * v), arrival)
-    count = _four_with_line(work, count, goal, image, False, arrival)
-    back_x = goal.x * math.cos(h) + goal.y * math.sin(h)
-    back_y = goal.x * math.sin(h) - goal.y * math.cos(h)
-    return _four_with_line(work, count, Pose(back_x, back_y, h), image, True, arrival)
+            count = _add(work, count, code, (time * t, q, time * u, q, time * v), choice)
+    count = _four_with_line(work, count, goal, image, False, choice)
+    back_x = goal.x * goal.cos + goal.y * goal.sin
+    back_y = goal.x * goal.sin - goal.y * goal.cos
+    return _four_with_line(work, count, WordEnd(back_x, back_y, h, goal.sin, goal.cos), image, True, choice)
 
 
 def _four_with_line(
-    work: PlanningWork, count: int, goal: Pose, image: WordSymmetry, backwards: bool, arrival: ArrivalState
+    work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, backwards: bool, choice: WordChoice
 ) -> int:
     """List CCSC or, read backwards, CSCC."""
     h = goal.heading
     q = -0.5 * PI * image.time
-    sx = goal.x - math.sin(h)
-    sy = goal.y - 1.0 + math.cos(h)
+    sx = goal.x - goal.sin
+    sy = goal.y - 1.0 + goal.cos
     square = sx * sx + sy * sy
-    if square >= 4.0:
-        r = math.sqrt(square - 4.0)
+    r = math.sqrt(max(square - 4.0, 0.0))
+    if square >= 4.0 and not _is_too_long(work, 0.5 * PI + abs(2.0 - r), choice):
         t = image.time * wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
         u = image.time * (2.0 - r)
         v = image.time * wrap_angle(h - 0.5 * PI - t * image.time)
-        if backwards:
-            code = word_code(image.left, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
-            count = _add(work, count, code, (v, u, q, t, 0.0), arrival)
-        else:
-            code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, UNUSED_PIECE)
-            count = _add(work, count, code, (t, q, u, v, 0.0), arrival)
-    px = goal.x + math.sin(h)
-    py = goal.y - 1.0 - math.cos(h)
+        count = _add_four(work, count, image, image.left, (t, q, u, v), backwards, choice)
+    px = goal.x + goal.sin
+    py = goal.y - 1.0 - goal.cos
     rho = math.sqrt(px * px + py * py)
-    if rho >= 2.0:
+    if rho >= 2.0 and not _is_too_long(work, 0.5 * PI + rho - 2.0, choice):
         t = image.time * math.atan2(px, -py)
         u = image.time * (2.0 - rho)
         v = image.time * wrap_angle(t * image.time + 0.5 * PI - h)
-        if backwards:
-            code = word_code(image.right, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
-            count = _add(work, count, code, (v, u, q, t, 0.0), arrival)
-        else:
-            code = word_code(image.left, image.right, STRAIGHT_LINE, image.right, UNUSED_PIECE)
-            count = _add(work, count, code, (t, q, u, v, 0.0), arrival)
+        count = _add_four(work, count, image, image.right, (t, q, u, v), backwards, choice)
     return count
+
+
+def _add_four(
+    work: PlanningWork,
+    count: int,
+    image: WordSymmetry,
+    last: int,
+    lengths: tuple[float, float, float, float],
+    backwards: bool,
+    choice: WordChoice,
+) -> int:
+    """List CCSC or CSCC whose line joins an arc that turns to ``last`` (left or right)."""
+    t, q, u, v = lengths
+    if backwards:
+        code = word_code(last, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
+        return _add(work, count, code, (v, u, q, t, 0.0), choice)
+    code = word_code(image.left, image.right, STRAIGHT_LINE, last, UNUSED_PIECE)
+    return _add(work, count, code, (t, q, u, v, 0.0), choice)
 
 
 def _first_of_four(u: float, v: float, x: float, y: float) -> float:
@@ -210,26 +263,30 @@ def _first_of_four(u: float, v: float, x: float, y: float) -> float:
 
 
 def _add(
-    work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float, float, float], arrival: ArrivalState
+    work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float, float, float], choice: WordChoice
 ) -> int:
-    """List one word with its cost [m]: its length, changes of direction, and of the wheel."""
-    gear = arrival.gear
-    lock = arrival.lock
+    """List one word with its cost [m], its length, changes of direction, and of the wheel, if that is low enough."""
+    a, b, c, d, e = lengths
+    if _is_too_long(work, abs(a) + abs(b) + abs(c) + abs(d) + abs(e), choice):
+        return count
+    gear = choice.gear
+    lock = choice.lock
     cost = 0.0
-    rest = code
     for number in range(5):
         distance = _without_tiny(lengths[number])
-        turn = float(rest % 3 - 1)
-        rest = rest // 3
         if distance != 0.0:
+            turn = float(turn_of(code, number) - 1)
             direction = sign(distance)
-            cost += abs(distance) * arrival.radius + abs(turn - lock) * STEERING_COST
+            cost += abs(distance) * choice.radius + abs(turn - lock) * STEERING_COST
             if direction * gear < 0.0:
                 cost += CUSP_COST
             gear = direction
             lock = turn
-    r = arrival.radius
-    a, b, c, d, e = lengths
+    if cost >= work.values[PlanValue.WORD_LIMIT]:
+        return count
+    if choice.only_cheaper:
+        work.values[PlanValue.WORD_LIMIT] = cost
+    r = choice.radius
     set_word(
         work,
         count,

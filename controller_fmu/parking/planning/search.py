@@ -3,11 +3,11 @@
 import math
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
-from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, cheapest_word, try_analytic_expansion
+from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, try_analytic_expansion
 from controller_fmu.parking.planning.collision import free_distance
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
-from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.reeds_shepp import least_word_cost, list_words
 from controller_fmu.parking.planning.search_tree import (
     add_node,
     clear_tree,
@@ -110,10 +110,8 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
     """Refine the estimated cost of a path through a node; returns whether the node is closed or back in the queue."""
     pose = pose_of(work, node)
     if work.node_state[node] == COST_ESTIMATED:
-        words = list_words(work, pose, problem.target, gear_of(work, node), lock_of(work, node, problem), problem)
-        shortest = work.word_cost[cheapest_word(work, words)]
-        cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
-        work.node_cost_estimate[node] = shortest if shortest > cost_to_go else cost_to_go
+        estimate = _cost_to_target(work, node, pose, problem)
+        work.node_cost_estimate[node] = estimate
         work.node_state[node] = COST_EVALUATED
     if work.node_cost[node] + work.node_cost_estimate[node] >= bound_cost(work):
         work.node_state[node] = NODE_CLOSED
@@ -128,11 +126,27 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
     return True
 
 
+def _cost_to_target(work: PlanningWork, node: int, pose: Pose, problem: SearchProblem) -> float:
+    """Return what a distance from a node to the target costs at least [m]; less if it is no use even so."""
+    cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
+    # more than what is of use, since costs of nodes are rounded to single precision
+    limit = bound_cost(work) - work.node_cost[node] + MIN_LENGTH
+    if cost_to_go >= limit:
+        return cost_to_go
+    gear = gear_of(work, node)
+    shortest = least_word_cost(work, pose, problem.target, gear, lock_of(work, node, problem), limit, problem)
+    return max(shortest, cost_to_go)
+
+
 def bound_cost(work: PlanningWork) -> float:
     """Return the cost [m] of the best path found, by this search or one before it; nodes that cost more are no use."""
     known = work.values[PlanValue.BEST_PATH_COST] if work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0 else UNREACHABLE_COST
-    found = work.values[PlanValue.BEST_COST] if work.counts[PlanCount.BEST_NODE] != NO_INDEX else UNREACHABLE_COST
-    return min(known, found)
+    return min(known, best_cost(work))
+
+
+def best_cost(work: PlanningWork) -> float:
+    """Return the cost [m] of the best path that this search has found."""
+    return work.values[PlanValue.BEST_COST] if work.counts[PlanCount.BEST_NODE] != NO_INDEX else UNREACHABLE_COST
 
 
 def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
@@ -145,7 +159,8 @@ def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
     work.node_state[node] = NODE_CLOSED
     work.counts[PlanCount.EXPANSIONS] = work.counts[PlanCount.EXPANSIONS] + 1
     measure_free_distances(work, pose, problem)
-    words = list_words(work, pose, problem.target, gear, lock, problem)
+    limit = best_cost(work) - work.node_cost[node]
+    words = list_words(work, pose, problem.target, gear, lock, limit, problem)
     try_analytic_expansion(work, node, pose, words, problem)
     generate_successors(work, node, pose, gear, lock, problem)
     if none_yet and work.counts[PlanCount.BEST_NODE] != NO_INDEX:

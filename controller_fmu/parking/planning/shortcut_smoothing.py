@@ -3,7 +3,7 @@
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free, word_length
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
-from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.reeds_shepp import list_words, turn_of
 from controller_fmu.parking.planning.work import (
     NO_INDEX,
     WORK_SEGMENTS,
@@ -39,10 +39,8 @@ def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
         for _ in range(depth - 1 - level):
             node = work.node_parent[node]
         pose = append_segment(work, pose, work.node_length[node], work.node_curvature[node])
-    rest = work.counts[PlanCount.BEST_CODE]
     for number in range(5):
-        k = (rest % 3 - 1) * problem.car.max_curvature
-        rest = rest // 3
+        k = (turn_of(work.counts[PlanCount.BEST_CODE], number) - 1) * problem.car.max_curvature
         pose = append_segment(work, pose, work.values[PlanValue.BEST_LENGTHS + number], k)
     work.counts[PlanCount.SPAN] = work.counts[PlanCount.SEGMENT_COUNT]
     work.counts[PlanCount.SPAN_START] = 0
@@ -142,11 +140,11 @@ def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProb
     gear = sign(work.segment_length[place - 1]) if place > 0 else 0.0
     lock = work.segment_curvature[place - 1] / problem.car.max_curvature if place > 0 else 0.0
     limit = span_cost(work, place, span, problem) - MIN_GAIN
-    words = list_words(work, start, end, gear, lock, problem)
+    words = list_words(work, start, end, gear, lock, limit, problem)
     tries = 0
     while tries < MAX_TRIES:
         word = cheapest_word(work, words)
-        if work.word_cost[word] >= limit:
+        if word == NO_INDEX:
             return False
         cost = work.word_cost[word]
         if place + span < count:
@@ -161,14 +159,12 @@ def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProb
 
 def _cost_after(work: PlanningWork, word: int, segment: int, problem: SearchProblem) -> float:
     """Return the cost [m] of going on from a word to a segment of the path."""
-    rest = work.word_code[word]
     distance = 0.0
     k = 0.0
     for number in range(5):
         if word_length(work, word, number) != 0.0:
             distance = word_length(work, word, number)
-            k = (rest % 3 - 1) * problem.car.max_curvature
-        rest = rest // 3
+            k = (turn_of(work.word_code[word], number) - 1) * problem.car.max_curvature
     return joint_cost(distance, k, work.segment_length[segment], work.segment_curvature[segment], problem)
 
 
@@ -183,12 +179,10 @@ def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: Sea
         return False
     pose = pose_at(work, place)
     move_segments(work, place + span, count - place - span, used - span)
-    rest = work.word_code[word]
     segment = place
     for number in range(5):
         distance = word_length(work, word, number)
-        k = (rest % 3 - 1) * problem.car.max_curvature
-        rest = rest // 3
+        k = (turn_of(work.word_code[word], number) - 1) * problem.car.max_curvature
         if distance != 0.0:
             set_segment(work, segment, pose, distance, k)
             pose = pose_along_arc(pose, distance, k)

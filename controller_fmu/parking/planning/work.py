@@ -60,7 +60,7 @@ class PlanningWork(NamedTuple):
     node_state: Annotated[Ints, Column("h", MAX_NODES, "1", "0 estimated, 1 evaluated, 2 closed")]
     crowding: Annotated[Ints, Column("h", CROWDING_CELLS, "1", "how often nodes of a region have been taken up")]
     word_cost: Annotated[Floats, Column("d", MAX_WORDS, "m", "cost of a word")]
-    word_code: Annotated[Ints, Column("i", MAX_WORDS, "1", "its turns, digits to the base of 3")]
+    word_code: Annotated[Ints, Column("i", MAX_WORDS, "1", "its turns, two bits each")]
     word_a: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its first segment")]
     word_b: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its second segment")]
     word_c: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its third segment")]
@@ -143,6 +143,8 @@ class PlanValue(IntEnum):
     """Clearance [m] at start or goal, whichever has less."""
     BEST_PATH_COST = 23
     BEST_PATH_MARGIN = 24
+    WORD_LIMIT = 25
+    """Words that cost as much [m] are no use."""
 
 
 def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:

@@ -15,7 +15,7 @@ from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
-from controller_fmu.parking.planning.reeds_shepp import least_word_cost, list_words, turn_of
+from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words, turn_of
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
 from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork
 from modelkit.store import new_store, size_of
@@ -55,7 +55,7 @@ def test_every_word_ends_where_it_should() -> None:
     problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
-        count = list_words(store, ORIGIN, end, 0.0, 0.0, UNREACHABLE_COST, problem)
+        count = list_words(store, ORIGIN, end, WordRequest(0.0, 0.0, UNREACHABLE_COST), problem)
         assert 32 <= count <= MAX_WORDS
         for word in range(count):
             pose = ORIGIN
@@ -79,20 +79,18 @@ def test_words_that_cost_too_much_are_left_out_and_no_others() -> None:
             draw.uniform(-reach, reach), draw.uniform(-reach, reach), draw.choice((0.0, draw.uniform(-6.0, 6.0)))
         )
         gear, lock = draw.choice((-1.0, 0.0, 1.0)), draw.choice((-1.0, -0.5, 0.0, 0.5, 1.0))
-        words = _words(store, end, gear, lock, UNREACHABLE_COST, problem)
-        least = min(words)
-        assert least_word_cost(store, ORIGIN, end, gear, lock, UNREACHABLE_COST, problem) == least[0]
-        limit = draw.choice(words)[0]
-        assert _words(store, end, gear, lock, limit, problem) == [word for word in words if word[0] < limit]
-        cheapest = least_word_cost(store, ORIGIN, end, gear, lock, limit, problem)
-        assert cheapest == min(limit, least[0])
+        any_cost = WordRequest(gear, lock, UNREACHABLE_COST)
+        words = _words(store, end, any_cost, problem)
+        least = min(words)[0]
+        assert least_word_cost(store, ORIGIN, end, any_cost, problem) == least
+        limited = any_cost._replace(limit=draw.choice(words)[0])
+        assert _words(store, end, limited, problem) == [word for word in words if word[0] < limited.limit]
+        assert least_word_cost(store, ORIGIN, end, limited, problem) == min(limited.limit, least)
 
 
-def _words(
-    store: PlanningWork, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
-) -> list[tuple[float, ...]]:
+def _words(store: PlanningWork, end: Pose, request: WordRequest, problem: SearchProblem) -> list[tuple[float, ...]]:
     """Return cost, turns and lengths of the words from the origin to ``end``."""
-    count = list_words(store, ORIGIN, end, gear, lock, limit, problem)
+    count = list_words(store, ORIGIN, end, request, problem)
     return [
         (store.word_cost[word], store.word_code[word], *(word_length(store, word, piece) for piece in range(5)))
         for word in range(count)

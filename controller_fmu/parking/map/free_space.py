@@ -29,14 +29,11 @@ class FreeSpace(NamedTuple):
     left: tuple[Ray, ...] = (Ray(),) * MAX_RAYS
 
 
-def add_ray(rays: tuple[Ray, ...], sensor: SensorPose, measured: float) -> tuple[Ray, ...]:
-    """Return the ``MAX_RAYS`` rays of a flank with one of range ``measured`` [m] more; the oldest is forgotten."""
-    last = rays[MAX_RAYS - 1]
-    dx = sensor.x - last.sensor.x
-    dy = sensor.y - last.sensor.y
-    if last.range > 0.0 and dx * dx + dy * dy < RAY_SPACING * RAY_SPACING:
-        return rays
-    return rays[1:] + (Ray(sensor, measured),)
+def is_next_ray(last: Ray, ray: Ray) -> bool:
+    """Return whether a ray is kept after the ``last`` one of its side: its sensor has moved far enough."""
+    dx = ray.sensor.x - last.sensor.x
+    dy = ray.sensor.y - last.sensor.y
+    return last.range <= 0.0 or dx * dx + dy * dy >= RAY_SPACING * RAY_SPACING
 
 
 def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:

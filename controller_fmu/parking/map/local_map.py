@@ -14,7 +14,7 @@ from controller_fmu.parking.map.chain_update import (
     next_chain,
 )
 from controller_fmu.parking.map.echo_chain import EchoChain
-from controller_fmu.parking.map.free_space import FreeSpace, add_ray
+from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.oblique_side import (
     CONE_BOUNDARIES,
@@ -23,7 +23,7 @@ from controller_fmu.parking.map.oblique_side import (
     update_oblique_sides,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.map.prediction import predict_landmarks
+from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.map.visibility import (
     contradict,
     is_contradicted,
@@ -89,11 +89,14 @@ def update_map(
     dy = pose.y - local_map.pose.y
     driven = math.sqrt(dx * dx + dy * dy) if local_map.begun else 0.0
     local_map = local_map._replace(
-        landmarks=predict_landmarks(local_map.landmarks, pose, driven, params),
         pose=pose,
         distance=local_map.distance + driven,
         begun=True,
     )
+    for number in range(MAX_LANDMARKS):
+        if local_map.landmarks[number].type != LandmarkType.NONE:
+            after = predict_landmark(local_map.landmarks[number], pose, driven, params)
+            local_map = with_landmark(local_map, number, after)
     variance = range_variance(params.range_noise, sensors.resolution)
     for number in range(MAX_SENSORS):
         sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, pose)
@@ -192,8 +195,8 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
     is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
     is_missed = False
     for number in range(MAX_LANDMARKS):
-        landmark = local_map.landmarks[number]
-        if is_in_reach(landmark, sensor, measurement.range + CONFIRMING_RANGE):
+        if is_in_reach(local_map.landmarks[number], sensor, measurement.range + CONFIRMING_RANGE):
+            landmark = local_map.landmarks[number]
             is_echo = measurement.status == ReadingStatus.ECHO
             after = landmark
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
@@ -214,8 +217,9 @@ def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> boo
 
 def _with_ray(free_space: FreeSpace, measurement: Measurement) -> FreeSpace:
     """Return free space with the ray of a flank's front sensor; other sensors add none."""
-    if measurement.number == FRONT_RIGHT_SIDE:
-        return free_space._replace(right=add_ray(free_space.right, measurement.sensor, measurement.range))
-    if measurement.number == FRONT_LEFT_SIDE:
-        return free_space._replace(left=add_ray(free_space.left, measurement.sensor, measurement.range))
+    ray = Ray(measurement.sensor, measurement.range)
+    if measurement.number == FRONT_RIGHT_SIDE and is_next_ray(free_space.right[-1], ray):
+        return free_space._replace(right=free_space.right[1:] + (ray,))
+    if measurement.number == FRONT_LEFT_SIDE and is_next_ray(free_space.left[-1], ray):
+        return free_space._replace(left=free_space.left[1:] + (ray,))
     return free_space

@@ -9,7 +9,7 @@ the vehicle moves by -u e_d + (z x r) e_h, with u the vehicle's direction, and t
 
 import math
 
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from modelkit.vocabulary import Pose
 
@@ -32,10 +32,3 @@ def predict_landmark(landmark: Landmark, vehicle: Pose, distance: float, params:
         yh=landmark.yh + turn * gy,
         hh=landmark.hh + turn,
     )
-
-
-def predict_landmarks(
-    landmarks: tuple[Landmark, ...], vehicle: Pose, distance: float, params: MappingParams
-) -> tuple[Landmark, ...]:
-    """Return all landmarks after the vehicle, now at ``vehicle``, drove ``distance`` [m]."""
-    return tuple(predict_landmark(landmarks[number], vehicle, distance, params) for number in range(MAX_LANDMARKS))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import (
     OutlineFrame,
     VehicleOutline,
+    max_point_speed_ratio,
     outline_distance,
     outline_frame,
     pose_along_arc,
@@ -82,6 +83,10 @@ class OutlineSweep(NamedTuple):
     poses: tuple[OutlineFrame, ...] = (OutlineFrame(),) * MAX_POSES
     """At horizon / POSES, twice that and so on."""
     outline: VehicleOutline = VehicleOutline()
+    here: OutlineFrame = OutlineFrame()
+    """Where it is now."""
+    reach: float = 0.0
+    """No point of it moves farther [m]."""
 
 
 class MonitorVerdict(NamedTuple):
@@ -115,7 +120,8 @@ def monitor_collision(
             )
             for step in range(MAX_POSES)
         )
-        sweep = OutlineSweep(horizon, poses, outline)
+        reach = horizon * max_point_speed_ratio(outline, motion.curvature)
+        sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), reach)
         by_map = free_by_map(motion, sweep, landmarks, params, mapping)
         by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
         by_map = min(by_map, by_echoes)
@@ -142,8 +148,9 @@ def free_by_map(
         if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach + outline.half_length):
             a = start_point(landmark)
             b = end_point(landmark)
-            least = line_distance(a, b, outline_frame(motion.pose), outline) - MIN_APPROACH
-            for step in range(1, MAX_POSES + 1):
+            least = line_distance(a, b, sweep.here, outline) - MIN_APPROACH
+            comes_near = least - sweep.reach < params.map_distance
+            for step in range(1, (MAX_POSES if comes_near else 0) + 1):
                 travelled = horizon * step / MAX_POSES
                 distance = line_distance(a, b, sweep.poses[step - 1], outline)
                 if travelled < free and distance < params.map_distance and distance < least:
@@ -167,8 +174,12 @@ def free_by_echoes(
         if echo.is_present and echo.is_unexplained == unexplained:
             a = side_start(echo)
             b = side_end(echo)
-            least = line_distance(a, b, outline_frame(motion.pose), outline) - MIN_APPROACH
-            for step in range(1, MAX_POSES + 1):
+            least = line_distance(a, b, sweep.here, outline) - MIN_APPROACH
+            comes_near = least - sweep.reach < params.map_distance
+            if echo.is_unexplained:
+                approach = max(echo.closing_speed, 0.0) * (motion.delay + MAX_RATE_TIME)
+                comes_near = least - sweep.reach < params.echo_distance + approach
+            for step in range(1, (MAX_POSES if comes_near else 0) + 1):
                 travelled = horizon * step / MAX_POSES
                 time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
                 required = params.map_distance

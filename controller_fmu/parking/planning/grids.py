@@ -196,13 +196,11 @@ def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
     row = cell // count
     column = cell - row * count
     here = work.cost_to_go[cell]
-    for side in range(9):
-        r = row + side // 3 - 1
-        c = column + side % 3 - 1
-        if side != 4 and 0 <= r < count and 0 <= c < count:
+    for r in range(max(row - 1, 0), min(row + 2, count)):
+        for c in range(max(column - 1, 0), min(column + 2, count)):
             other = r * count + c
             before = work.cost_to_go[other]
-            distance = here + region.cost_to_go_cell * (1.0 if side % 2 == 1 else 1.41421356)
+            distance = here + region.cost_to_go_cell * (1.0 if r == row or c == column else 1.41421356)
             if before >= 0.0 and distance < before - 1e-3:
                 work.cost_to_go[other] = distance
                 if work.cost_to_go_next[other] == NOT_QUEUED:

@@ -35,13 +35,21 @@ def turn_of(code: int, segment: int) -> int:
     return (code >> 2 * segment) & 3
 
 
-class WordChoice(NamedTuple):
-    """Which words are listed, and how the car comes to their start: what its first changes are priced by."""
+class WordRequest(NamedTuple):
+    """How the car comes to the start of a word, which prices its first changes, and what the word may cost."""
 
     gear: float
     """1.0, -1.0; 0.0: none."""
     lock: float
-    """-1.0 to 1.0."""
+    """Its curvature over the largest, -1.0 to 1.0."""
+    limit: float
+    """Words that cost as much [m] are not listed."""
+
+
+class WordChoice(NamedTuple):
+    """Which words are listed."""
+
+    request: WordRequest
     radius: float
     """Of the smallest circle [m]."""
     only_cheaper: bool
@@ -65,30 +73,26 @@ class WordSymmetry(NamedTuple):
     right: int
     time: float
     """1.0, or -1.0: each segment in the other direction of travel."""
+    backwards: bool = False
+    """Its segments in the opposite order."""
 
 
-def list_words(
-    work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
+def list_words(work: PlanningWork, start: Pose, end: Pose, request: WordRequest, problem: SearchProblem) -> int:
+    """List the words from ``start`` to ``end`` that cost less than the limit [m] in ``work``; returns how many."""
+    return _list_words(work, start, end, request, False, problem)
+
+
+def least_word_cost(work: PlanningWork, start: Pose, end: Pose, request: WordRequest, problem: SearchProblem) -> float:
+    """Return the cost [m] of the cheapest word from ``start`` to ``end``, or the limit [m] if that is less."""
+    count = _list_words(work, start, end, request, True, problem)
+    return work.word_cost[count - 1] if count > 0 else request.limit
+
+
+def _list_words(
+    work: PlanningWork, start: Pose, end: Pose, request: WordRequest, only_cheaper: bool, problem: SearchProblem
 ) -> int:
-    """List the words from ``start`` to ``end`` that cost less than ``limit`` [m] in ``work``; returns how many.
-
-    ``gear`` (1.0, -1.0; 0.0: none) and ``lock`` (-1.0 to 1.0) are those with which the car arrives at
-    ``start``: its direction, and its curvature over the largest.
-    """
-    work.values[PlanValue.WORD_LIMIT] = limit
-    return _list_words(work, start, end, WordChoice(gear, lock, 1.0 / problem.car.max_curvature, False), problem)
-
-
-def least_word_cost(
-    work: PlanningWork, start: Pose, end: Pose, gear: float, lock: float, limit: float, problem: SearchProblem
-) -> float:
-    """Return the cost [m] of the cheapest word, or ``limit`` if that is less; arguments as in ``list_words``."""
-    work.values[PlanValue.WORD_LIMIT] = limit
-    count = _list_words(work, start, end, WordChoice(gear, lock, 1.0 / problem.car.max_curvature, True), problem)
-    return work.word_cost[count - 1] if count > 0 else limit
-
-
-def _list_words(work: PlanningWork, start: Pose, end: Pose, choice: WordChoice, problem: SearchProblem) -> int:
+    choice = WordChoice(request, 1.0 / problem.car.max_curvature, only_cheaper)
+    work.values[PlanValue.WORD_LIMIT] = request.limit
     k = problem.car.max_curvature
     cos = math.cos(start.heading)
     sin = math.sin(start.heading)
@@ -201,15 +205,14 @@ def _more_pieces(work: PlanningWork, count: int, goal: WordEnd, image: WordSymme
             q = -0.5 * PI * time
             code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, image.right)
             count = _add(work, count, code, (time * t, q, time * u, q, time * v), choice)
-    count = _four_with_line(work, count, goal, image, False, choice)
+    count = _four_with_line(work, count, goal, image, choice)
     back_x = goal.x * goal.cos + goal.y * goal.sin
     back_y = goal.x * goal.sin - goal.y * goal.cos
-    return _four_with_line(work, count, WordEnd(back_x, back_y, h, goal.sin, goal.cos), image, True, choice)
+    goal = WordEnd(back_x, back_y, h, goal.sin, goal.cos)
+    return _four_with_line(work, count, goal, image._replace(backwards=True), choice)
 
 
-def _four_with_line(
-    work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, backwards: bool, choice: WordChoice
-) -> int:
+def _four_with_line(work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, choice: WordChoice) -> int:
     """List CCSC or, read backwards, CSCC."""
     h = goal.heading
     q = -0.5 * PI * image.time
@@ -221,7 +224,7 @@ def _four_with_line(
         t = image.time * wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
         u = image.time * (2.0 - r)
         v = image.time * wrap_angle(h - 0.5 * PI - t * image.time)
-        count = _add_four(work, count, image, image.left, (t, q, u, v), backwards, choice)
+        count = _add_four(work, count, image, image.left, (t, q, u, v), choice)
     px = goal.x + goal.sin
     py = goal.y - 1.0 - goal.cos
     rho = math.sqrt(px * px + py * py)
@@ -229,7 +232,7 @@ def _four_with_line(
         t = image.time * math.atan2(px, -py)
         u = image.time * (2.0 - rho)
         v = image.time * wrap_angle(t * image.time + 0.5 * PI - h)
-        count = _add_four(work, count, image, image.right, (t, q, u, v), backwards, choice)
+        count = _add_four(work, count, image, image.right, (t, q, u, v), choice)
     return count
 
 
@@ -239,12 +242,11 @@ def _add_four(
     image: WordSymmetry,
     last: int,
     lengths: tuple[float, float, float, float],
-    backwards: bool,
     choice: WordChoice,
 ) -> int:
     """List CCSC or CSCC whose line joins an arc that turns to ``last`` (left or right)."""
     t, q, u, v = lengths
-    if backwards:
+    if image.backwards:
         code = word_code(last, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
         return _add(work, count, code, (v, u, q, t, 0.0), choice)
     code = word_code(image.left, image.right, STRAIGHT_LINE, last, UNUSED_PIECE)
@@ -269,8 +271,8 @@ def _add(
     a, b, c, d, e = lengths
     if _is_too_long(work, abs(a) + abs(b) + abs(c) + abs(d) + abs(e), choice):
         return count
-    gear = choice.gear
-    lock = choice.lock
+    gear = choice.request.gear
+    lock = choice.request.lock
     cost = 0.0
     for number in range(5):
         distance = _without_tiny(lengths[number])

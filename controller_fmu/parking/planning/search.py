@@ -4,10 +4,10 @@ import math
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, try_analytic_expansion
-from controller_fmu.parking.planning.collision import free_distance
+from controller_fmu.parking.planning.collision import clearance, free_distance, sweep_arc
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
-from controller_fmu.parking.planning.reeds_shepp import least_word_cost, list_words
+from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words
 from controller_fmu.parking.planning.search_tree import (
     add_node,
     clear_tree,
@@ -133,8 +133,8 @@ def _cost_to_target(work: PlanningWork, node: int, pose: Pose, problem: SearchPr
     limit = bound_cost(work) - work.node_cost[node] + MIN_LENGTH
     if cost_to_go >= limit:
         return cost_to_go
-    gear = gear_of(work, node)
-    shortest = least_word_cost(work, pose, problem.target, gear, lock_of(work, node, problem), limit, problem)
+    request = WordRequest(gear_of(work, node), lock_of(work, node, problem), limit)
+    shortest = least_word_cost(work, pose, problem.target, request, problem)
     return max(shortest, cost_to_go)
 
 
@@ -159,8 +159,8 @@ def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
     work.node_state[node] = NODE_CLOSED
     work.counts[PlanCount.EXPANSIONS] = work.counts[PlanCount.EXPANSIONS] + 1
     measure_free_distances(work, pose, problem)
-    limit = best_cost(work) - work.node_cost[node]
-    words = list_words(work, pose, problem.target, gear, lock, limit, problem)
+    request = WordRequest(gear, lock, best_cost(work) - work.node_cost[node])
+    words = list_words(work, pose, problem.target, request, problem)
     try_analytic_expansion(work, node, pose, words, problem)
     generate_successors(work, node, pose, gear, lock, problem)
     if none_yet and work.counts[PlanCount.BEST_NODE] != NO_INDEX:
@@ -205,12 +205,12 @@ def heuristic(work: PlanningWork, pose: Pose, cost: float, problem: SearchProble
 
 def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProblem) -> None:
     """Measure how far the car can drive from a node, in both gears at five curvatures."""
+    gap = clearance(work, pose, problem) - problem.margin
     for gear in range(2):
         for turn in range(5):
             k = 0.5 * (turn - 2) * problem.car.max_curvature
-            work.values[PlanValue.FREE_AT_NODE + 5 * gear + turn] = free_distance(
-                work, pose, 2.0 * gear - 1.0, k, MAX_LENGTH, problem
-            )
+            driven = sweep_arc(work, pose, gap, (2.0 * gear - 1.0) * MAX_LENGTH, k, problem)
+            work.values[PlanValue.FREE_AT_NODE + 5 * gear + turn] = driven.distance
 
 
 def generate_successors(

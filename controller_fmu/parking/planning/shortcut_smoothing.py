@@ -3,7 +3,7 @@
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free, word_length
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
-from controller_fmu.parking.planning.reeds_shepp import list_words, turn_of
+from controller_fmu.parking.planning.reeds_shepp import WordRequest, list_words, turn_of
 from controller_fmu.parking.planning.work import (
     NO_INDEX,
     WORK_SEGMENTS,
@@ -140,7 +140,7 @@ def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProb
     gear = sign(work.segment_length[place - 1]) if place > 0 else 0.0
     lock = work.segment_curvature[place - 1] / problem.car.max_curvature if place > 0 else 0.0
     limit = span_cost(work, place, span, problem) - MIN_GAIN
-    words = list_words(work, start, end, gear, lock, limit, problem)
+    words = list_words(work, start, end, WordRequest(gear, lock, limit), problem)
     tries = 0
     while tries < MAX_TRIES:
         word = cheapest_word(work, words)

@@ -25,7 +25,7 @@ from controller_fmu.parking.slots.candidate import (
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row, side_as_member
+from controller_fmu.parking.slots.row import MAX_MEMBERS, RowMember, SlotRow, find_row, side_as_member
 from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
@@ -299,3 +299,12 @@ def test_bays_of_the_usual_width_count(width: float, middles: tuple[float, ...])
     behind, ahead = RowMember(-1.8, 0.0, 0.0, True, True), RowMember(width, width + 1.8, 0.0, True, True)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead)
     assert min(abs(goal_pose(slot, OUTLINE, SlotParams()).x - middle) for middle in middles) < 0.1
+
+
+@pytest.mark.parametrize(("pitch", "gap", "middle"), [(2.3, 5.1, 3.7), (2.3, 3.5, 1.75), (2.8, 5.1, 2.55)])
+def test_how_wide_bays_are_shows_by_cars_beside_each_other(pitch: float, gap: float, middle: float) -> None:
+    """Two bays of 2.3 m are 5.1 m between cars: one wide gap where cars stand 2.8 m from middle to middle."""
+    cars = [RowMember(x, x + 1.8, start_known=True, end_known=True) for x in (gap, -1.8, -1.8 - pitch)]
+    row = SlotRow(members=(*cars, *(RowMember(),) * (MAX_MEMBERS - 3)), used=3)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, ahead=cars[0], behind=cars[1])
+    assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)

@@ -7,18 +7,16 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.slots.candidate import (
     BAY_WIDTH,
     CAR_WIDTH,
+    CAR_WIDTH_SIGMA,
     SlotCandidate,
     SlotType,
     into_heading,
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import UNEVEN_SIGMA
+from controller_fmu.parking.slots.row import UNEVEN_SIGMA, SlotRow
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
-
-MIN_BAY = 2.4
-"""Two narrower bays [m] may be a single wide gap: ends of sides err by 0.1 m, widths by 0.2 m."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
@@ -83,10 +81,24 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
     The middles of the cars beside n empty bays are n + 1 bays apart: 4.6 to 5.8, 6.9 to 8.7 or 9.2 to 11.6 m where bays
-    are 2.3 to 2.9 m wide, so n follows from the mean width. Cars are as wide as usual within 0.1 m, sides as measured
-    within 0.4 m.
+    are 2.3 to 2.9 m wide, so n follows from the mean width, or from that of this row's bays where two cars beside each
+    other show it. Cars are as wide as usual within 0.1 m, sides as measured within 0.4 m.
     """
     distance = candidate.ahead.start - candidate.behind.end + CAR_WIDTH
-    if distance < 3.0 * MIN_BAY:
+    bay = bay_width(candidate.row)
+    if distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
-    return candidate.ahead.start + 0.5 * CAR_WIDTH - distance / math.floor(distance / BAY_WIDTH + 0.5)
+    return candidate.ahead.start + 0.5 * CAR_WIDTH - distance / max(math.floor(distance / bay + 0.5), 3)
+
+
+def bay_width(row: SlotRow) -> float:
+    """Return the mean distance [m] from car to car where no place between two is empty, else that of usual bays."""
+    total = 0.0
+    count = 0
+    for number in range(row.used - 1):
+        ahead = row.members[number]
+        behind = row.members[number + 1]
+        if ahead.start_known and behind.start_known and CAR_WIDTH < ahead.start - behind.start < 2.0 * CAR_WIDTH:
+            total += ahead.start - behind.start
+            count += 1
+    return total / count if count > 0 else BAY_WIDTH

@@ -111,7 +111,6 @@ def find_slot(
     for number in range(MAX_MEMBERS - 1):
         if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
             candidate = _candidate(row, number, landmarks, outline, slot, params)
-            candidate = _as_driveway(candidate, rays, outline, slot)
             if candidate.type != SlotType.NONE and is_observed_free(candidate, rays):
                 better = candidate.reason == Reason.NONE or found.type == SlotType.NONE
                 found = candidate if better else found
@@ -189,29 +188,6 @@ def _between_posts(found: SlotCandidate, landmarks: tuple[Landmark, ...], params
 def _is_in_row(deep: float, member: RowMember) -> bool:
     """Return whether a post ``deep`` [m] across a row stands where cars do."""
     return abs(deep - member.front) < ROW_DEPTH
-
-
-def _as_driveway(
-    candidate: SlotCandidate, rays: tuple[Ray, ...], outline: VehicleOutline, slot: SlotParams
-) -> SlotCandidate:
-    """Return a gap too short to park along as a perpendicular slot where it is wide enough and observed deep."""
-    width = candidate.ahead.start - candidate.behind.end
-    too_short = candidate.type == SlotType.PARALLEL and candidate.reason == Reason.SLOT_TOO_SHORT
-    is_wide = width >= 2.0 * outline.half_width + slot.room_across
-    is_possible = too_short and is_wide and slot.wanted != SlotKind.PARALLEL
-    if not is_possible or candidate.depth < MAX_PARALLEL_DEPTH:
-        return candidate
-    count = 0
-    for fraction in FREE_FRACTIONS:
-        x = candidate.behind.end + fraction * width
-        point = row_point(candidate.row, x, candidate.front + min(MAX_PARALLEL_DEPTH, candidate.depth - MIN_INSET))
-        if is_free(rays, point.x, point.y):
-            count += 1
-    if count == 0:
-        return candidate
-    needed = 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
-    reason = Reason.SLOT_TOO_SHALLOW if candidate.depth < needed else Reason.NONE
-    return candidate._replace(type=SlotType.PERPENDICULAR, reason=reason, missing=0.0)
 
 
 def log_likelihood_ratio(candidate: SlotCandidate) -> float:

@@ -10,7 +10,13 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
-from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex, next_index
+from controller_fmu.parking.geometry.polygons import (
+    LOCAL_VERTICES,
+    ObstacleMap,
+    Vertex,
+    next_index,
+    segment_distance_squared,
+)
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
@@ -26,7 +32,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
 from modelkit.geometry import Point
-from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
 LANDMARK_VERTICES = 2 * MAX_LANDMARKS
@@ -84,7 +89,7 @@ def obstacle_map(
     """Return the polygons around a slot; they keep ``START_CLEARANCE`` from the outline of the vehicle."""
     vehicle = place.pose
     quads = _slot_quads(slot, outline, place.road)
-    quads = tuple(_beside_vehicle(quads[number], slot, outline, vehicle) for number in range(SLOT_QUADS))
+    quads = tuple(_beside_vehicle(quad, slot, outline, vehicle) for quad in quads)
     return ObstacleMap(
         tuple(
             _landmark_vertex(landmarks[number // 2 if number < LANDMARK_VERTICES else 0], number, mapping)
@@ -101,27 +106,16 @@ def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -
         is_near = False
         first = 0
         for number in range(len(known)):
-            if known[number].polygon > 0:
-                if number > 0 and known[number - 1].polygon != known[number].polygon:
+            a = known[number]
+            if a.polygon > 0:
+                if number > 0 and known[number - 1].polygon != a.polygon:
                     first = number
-                after = next_index(known, number, first)
-                a = Point(known[number].x, known[number].y)
-                is_near = is_near or point_to_segment(point, a, Point(known[after].x, known[after].y)) < tolerance
+                b = known[next_index(known, number, first)]
+                square = segment_distance_squared(point.x - a.x, point.y - a.y, b.x - a.x, b.y - a.y)
+                is_near = is_near or square < tolerance * tolerance
         if not is_near:
             return False
     return True
-
-
-def point_to_segment(point: Point, a: Point, b: Point) -> float:
-    """Return the distance [m] of a point to the segment a-b."""
-    dx = b.x - a.x
-    dy = b.y - a.y
-    square = dx * dx + dy * dy
-    share = ((point.x - a.x) * dx + (point.y - a.y) * dy) / square if square > 0.0 else 0.0
-    share = clamp(share, 0.0, 1.0)
-    x = a.x + share * dx - point.x
-    y = a.y + share * dy - point.y
-    return math.sqrt(x * x + y * y)
 
 
 def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> Quad:

@@ -1,10 +1,8 @@
 """Outputs of the parking system, from what it remembers."""
 
-from controller_fmu.common.driver_selection import MAX_OFFERS
 from controller_fmu.interface import PlannedPiece, Reason
 from controller_fmu.parking.chart import ParkingPhase, ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
@@ -117,8 +115,8 @@ def alarm_of(memory: ParkingMemory) -> int:
 
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
     confirmed = 0
-    for number in range(MAX_LANDMARKS):
-        if is_confirmed(memory.perception.local_map.landmarks[number], params.mapping):
+    for landmark in memory.perception.local_map.landmarks:
+        if is_confirmed(landmark, params.mapping):
             confirmed += 1
     return ParkingSignals(
         state=memory.state,
@@ -133,7 +131,7 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
         parking_time=seconds(memory.clocks.running),
         goal=memory.plan.request.goal,
         slot=_slot_signals(memory.search.slot),
-        offered=tuple(_slot_signals(memory.search.offered[number]) for number in range(MAX_OFFERS)),
+        offered=tuple(_slot_signals(slot) for slot in memory.search.offered),
         alarm=alarm_of(memory),
         missing=memory.search.missing,
         shown=memory.search.shown,

@@ -10,7 +10,7 @@ from controller_fmu.parking.following.path_tracking import begin_path
 from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.visibility import predict_range
 from controller_fmu.parking.measurement.cycle import seconds
@@ -24,7 +24,6 @@ from controller_fmu.parking.measurement.sensor import (
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
-    MAX_REMEMBERED,
     KnownEchoes,
     VehiclePlace,
     away_from_vehicle,
@@ -85,11 +84,11 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
 def obstacle_count(memory: ParkingMemory) -> int:
     """Return how many landmarks and remembered echoes there are."""
     count = 0
-    for number in range(MAX_LANDMARKS):
-        if memory.perception.local_map.landmarks[number].type != LandmarkType.NONE:
+    for landmark in memory.perception.local_map.landmarks:
+        if landmark.type != LandmarkType.NONE:
             count += 1
-    for number in range(MAX_REMEMBERED):
-        if memory.perception.remembered[number].is_present:
+    for echo in memory.perception.remembered:
+        if echo.is_present:
             count += 1
     return count
 
@@ -112,20 +111,13 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
         if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
             middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
             limit = reading - params.monitor.unexplained
-            landmarks = tuple(
-                contradict_at_rest(landmarks[place], middle, limit, params) for place in range(MAX_LANDMARKS)
-            )
-            remembered = tuple(_still_there(remembered[place], middle, limit) for place in range(MAX_REMEMBERED))
+            landmarks = tuple(contradict_at_rest(landmark, middle, limit, params) for landmark in landmarks)
+            remembered = tuple(_still_there(echo, middle, limit) for echo in remembered)
             own = echoes[number]
             if own.is_present and planar_distance(own.x, own.y, middle.x, middle.y) < limit:
                 echoes = echoes[:number] + (EchoObstacle(),) + echoes[number + 1 :]
-    return memory._replace(
-        perception=perception._replace(
-            local_map=perception.local_map._replace(landmarks=landmarks),
-            remembered=remembered,
-            echoes=echoes,
-        )
-    )
+    perception = perception._replace(remembered=remembered, echoes=echoes)
+    return with_landmarks(memory._replace(perception=perception), landmarks)
 
 
 def _still_there(echo: EchoObstacle, sensor: SensorPose, limit: float) -> EchoObstacle:
@@ -251,23 +243,19 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     """Return the memory with the request for a path from here into the slot as it is known now."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    memory = _without_own_place(memory, pose, outline)
+    landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
+    memory = with_landmarks(memory, landmarks)
     if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
-    slot = correct_slot_by_map(memory.search, memory.perception.local_map.landmarks, outline, params.mapping)
+    slot = correct_slot_by_map(memory.search, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
     relaxed = memory.plan.is_relaxed
-    beside = tuple(
-        _as_obstacle(memory.perception.local_map.landmarks[number], slot, relaxed, outline, pose)
-        for number in range(MAX_LANDMARKS)
-    )
+    beside = tuple(_as_obstacle(landmark, slot, relaxed, outline, pose) for landmark in landmarks)
     place = VehiclePlace(pose, road)
     mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
     half_angle = params.car.ultrasonic.half_angle
     before = memory.perception.remembered
-    remembered = tuple(
-        without_explained(before[number], mapped, half_angle, params.monitor) for number in range(MAX_REMEMBERED)
-    )
+    remembered = tuple(without_explained(echo, mapped, half_angle, params.monitor) for echo in before)
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
     echoes = KnownEchoes(remembered, _present_echoes(memory, outline, pose))
     obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
@@ -284,16 +272,13 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
 
 def _present_echoes(memory: ParkingMemory, outline: VehicleOutline, pose: Pose) -> tuple[EchoObstacle, ...]:
     """Return what the sensors measure now as obstacles clear of the vehicle: the monitor may not let it nearer."""
-    present = memory.perception.echoes
-    return tuple(echo_away_from_vehicle(present[number], outline, pose) for number in range(MAX_SENSORS))
+    return tuple(echo_away_from_vehicle(echo, outline, pose) for echo in memory.perception.echoes)
 
 
-def _without_own_place(memory: ParkingMemory, pose: Pose, outline: VehicleOutline) -> ParkingMemory:
-    """Return the memory without landmarks where the vehicle stands."""
-    landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
-    return memory._replace(
-        perception=memory.perception._replace(local_map=memory.perception.local_map._replace(landmarks=landmarks))
-    )
+def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> ParkingMemory:
+    """Return the memory with other landmarks in its map."""
+    local_map = memory.perception.local_map._replace(landmarks=landmarks)
+    return memory._replace(perception=memory.perception._replace(local_map=local_map))
 
 
 def _as_obstacle(
@@ -308,10 +293,8 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     """Return the memory with the request for a path to a known goal, among the known polygons and what is not there."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    beside = tuple(
-        _as_unknown(memory.perception.local_map.landmarks[number], outline, pose, params)
-        for number in range(MAX_LANDMARKS)
-    )
+    landmarks = memory.perception.local_map.landmarks
+    beside = tuple(_as_unknown(landmark, outline, pose, params) for landmark in landmarks)
     echoes = KnownEchoes(memory.perception.remembered, _present_echoes(memory, outline, pose))
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
@@ -340,11 +323,10 @@ def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     side = road_side(inputs.driver_selection.side)
     box = free_box(memory.perception.cycle.readings, params.car)
     before = memory.perception.local_map.landmarks
-    landmarks = with_neighbours(before, box, side, pose, params.car, params.mapping)
+    memory = with_landmarks(memory, with_neighbours(before, box, side, pose, params.car, params.mapping))
     goal = pose_on_road(box, side, pose, vehicle_outline(params.car, params.plan.curvature_fraction))
     return memory._replace(
         strategy=Strategy.PULL_OUT,
-        perception=memory.perception._replace(local_map=memory.perception.local_map._replace(landmarks=landmarks)),
         plan=memory.plan._replace(way_out=goal),
         search=SearchProgress(pose=pose, stand=pose),
     )
@@ -387,10 +369,10 @@ def driving_dynamics(strategy: int, params: ParkingParams) -> DrivingDynamics:
 def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: VehicleOutline) -> tuple[Landmark, ...]:
     """Return the landmarks without those that the outline at ``pose`` touches: the vehicle stands there."""
     return tuple(
-        Landmark()
-        if landmarks[number].type != LandmarkType.NONE and landmark_distance(landmarks[number], pose, outline) <= 0.0
-        else landmarks[number]
-        for number in range(MAX_LANDMARKS)
+        landmark
+        if landmark.type == LandmarkType.NONE or landmark_distance(landmark, pose, outline) > 0.0
+        else Landmark()
+        for landmark in landmarks
     )
 
 

@@ -125,8 +125,8 @@ def _with_tracks(
     echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
     yields = perception.yields
-    for number in range(MAX_SENSORS):
-        if is_yielded_to(tracks[number]):
+    for track in tracks:
+        if is_yielded_to(track):
             yields = yield_cycles(params)
     return perception._replace(
         local_map=perception.local_map._replace(landmarks=landmarks), tracks=tracks, echoes=echoes, yields=yields
@@ -140,10 +140,7 @@ def yield_cycles(params: ParkingParams) -> int:
 
 def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
     """Return whether an object that the map does not hold approaches by itself."""
-    for number in range(MAX_SENSORS):
-        if echoes[number].is_present and echoes[number].is_unexplained and echoes[number].closing_speed > MAX_REST:
-            return True
-    return False
+    return any(echo.is_present and echo.is_unexplained and echo.closing_speed > MAX_REST for echo in echoes)
 
 
 def _with_facing(
@@ -325,10 +322,7 @@ def _is_meant(slot: SlotCandidate, side: int) -> bool:
 
 def _without_slot(search: SearchProgress, found: SlotCandidate) -> SearchProgress:
     """Return the search after a gap was rejected: a slot found before that overlaps it is none, either."""
-    offered = search.offered
-    offered = tuple(
-        SlotCandidate() if is_overlapping(offered[number], found) else offered[number] for number in range(MAX_OFFERS)
-    )
+    offered = tuple(SlotCandidate() if is_overlapping(slot, found) else slot for slot in search.offered)
     return search._replace(offered=offered, rejected=found.reason, missing=found.missing)
 
 

@@ -12,7 +12,7 @@ from controller_fmu.common.driver_selection import ChosenSide
 from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.facing_surface import BUMPER_SENSORS, is_pair
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType, free_index, offset_of, replace_landmark
+from controller_fmu.parking.map.landmark import Landmark, free_index, replace_landmark, segment_between
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus, reading_status
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH
@@ -111,27 +111,9 @@ def _segment(a: Point, b: Point, pose: Pose, params: MappingParams) -> Landmark:
     """Return the segment between two points of the vehicle's frame, known to ``MAX_STAND_OUT`` [m]."""
     p = point_from_frame(a.x, a.y, pose)
     q = point_from_frame(b.x, b.y, pose)
-    half = 0.5 * math.sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y))
     variance = 0.25 * MAX_STAND_OUT * MAX_STAND_OUT
-    found = Landmark(
-        type=LandmarkType.SEGMENT,
-        x=0.5 * (p.x + q.x),
-        y=0.5 * (p.y + q.y),
-        heading=math.atan2(q.y - p.y, q.x - p.x),
-        xx=variance,
-        yy=variance,
-        hh=variance / max(half * half, variance),
-        start=-half,
-        end=half,
-        start_variance=variance,
-        end_variance=variance,
-        start_known=True,
-        end_known=True,
-        confirmations=params.confirmations,
-    )
-    if offset_of(found, pose.x, pose.y) < 0.0:
-        return found._replace(heading=math.atan2(p.y - q.y, p.x - q.x))
-    return found
+    found = segment_between(p, q, Point(pose.x, pose.y), variance, variance)
+    return found._replace(start_known=True, end_known=True, confirmations=params.confirmations)
 
 
 def _insert(landmarks: tuple[Landmark, ...], new: Landmark) -> tuple[Landmark, ...]:

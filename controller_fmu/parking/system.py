@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.common.chart import bit
-from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenTask
+from controller_fmu.common.driver_selection import ChosenTask
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
@@ -337,11 +337,7 @@ def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
     """Return the memory at the start of a search; a slot that was shown is forgotten, the map is not."""
     if before == ParkingState.CONFIRMING:
         refused = memory.search.slot if memory.reason != Reason.NONE else memory.search.refused
-        offered = memory.search.offered
-        offered = tuple(
-            SlotCandidate() if is_same_gap(offered[number], refused) else offered[number]
-            for number in range(MAX_OFFERS)
-        )
+        offered = tuple(SlotCandidate() if is_same_gap(slot, refused) else slot for slot in memory.search.offered)
         search = SearchProgress(
             distance=memory.search.distance, rejected=memory.reason, refused=refused, offered=offered
         )

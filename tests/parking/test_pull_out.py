@@ -6,9 +6,10 @@ import pytest
 
 from controller_fmu.common.driver_selection import ChosenSide, ChosenTask, DriverSelection
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
-from controller_fmu.parking.geometry.outline import outline_distance, vehicle_outline
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
+from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, offset_of
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.monitor.collision_monitor import landmark_distance
 from controller_fmu.parking.outputs import prompt_of
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import max_manoeuvres
@@ -57,9 +58,8 @@ def test_landmarks_stand_around_the_vehicle_and_leave_the_road_free(side: Chosen
     goal = pose_on_road(box, road, pose, OUTLINE)
     for segment in segments:
         assert offset_of(segment, pose.x, pose.y) > 0.0, "the vehicle is on its left, as a sensor would have seen it"
-        for point in (start_point(segment), end_point(segment)):
-            assert outline_distance(point.x, point.y, pose, OUTLINE) > 0.1
-            assert outline_distance(point.x, point.y, goal, OUTLINE) > 0.2
+        assert landmark_distance(segment, pose, OUTLINE) > 0.1
+        assert landmark_distance(segment, goal, OUTLINE) > 0.2
     dx, dy = goal.x - pose.x, goal.y - pose.y
     across = dy * math.cos(pose.heading) - dx * math.sin(pose.heading)
     assert road * across > CAR.width + MAX_STAND_OUT

@@ -63,18 +63,6 @@ def outline_frame(pose: Pose) -> OutlineFrame:
     return OutlineFrame(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
 
 
-def outline_distance(x: float, y: float, pose: Pose, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the point (x, y) to the outline of a vehicle at ``pose``; 0 inside."""
-    frame = outline_frame(pose)
-    dx = x - frame.x
-    dy = y - frame.y
-    along = abs(dx * frame.cos + dy * frame.sin - outline.centre_ahead) - outline.half_length
-    across = abs(dy * frame.cos - dx * frame.sin) - outline.half_width
-    along = max(0.0, along)
-    across = max(0.0, across)
-    return math.sqrt(along * along + across * across)
-
-
 SAMPLE_COUNT = 40
 """Points on the boundary: 0.3 m apart."""
 

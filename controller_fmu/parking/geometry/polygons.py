@@ -30,3 +30,13 @@ def next_index(vertices: tuple[Vertex, ...], index: int, first: int) -> int:
     after = 0 if last else index + 1
     goes_on = not last and vertices[after].polygon == vertices[index].polygon
     return after if goes_on else first
+
+
+def segment_distance_squared(x: float, y: float, dx: float, dy: float) -> float:
+    """Return the squared distance [m2] from (x, y) to the segment from the origin to (dx, dy)."""
+    square = dx * dx + dy * dy
+    t = (x * dx + y * dy) / square if square > 0.0 else 0.0
+    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
+    ex = x - t * dx
+    ey = y - t * dy
+    return ex * ex + ey * ey

@@ -393,22 +393,16 @@ def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParam
     if length_of(new) < POINT_LENGTH:
         new = as_point(new)
     index = update.chain.landmark
-    other = same_side(update.landmarks, new, index, params)
-    if other >= 0 and is_better(update.landmarks[other], new):
-        update = update._replace(chain=update.chain._replace(landmark=-1))
-        return _with_landmark(update, index, Landmark()) if index >= 0 else update
+    landmarks = update.landmarks
+    other = same_side(landmarks, new, index, params)
+    is_known = other >= 0 and is_better(landmarks[other], new)
     if other >= 0 and index >= 0:
-        update = _with_landmark(update, other, Landmark())
-    if index < 0:
-        index = other if other >= 0 else free_index(update.landmarks)
-    update = update._replace(chain=update.chain._replace(landmark=index))
-    return _with_landmark(update, index, new)
-
-
-def _with_landmark(update: ChainUpdate, index: int, landmark: Landmark) -> ChainUpdate:
-    """Return the update with the landmark at ``index`` replaced."""
-    at = min(max(index, 0), MAX_LANDMARKS - 1)
-    return update._replace(landmarks=update.landmarks[:at] + (landmark,) + update.landmarks[at + 1 :])
+        landmarks = replace_landmark(landmarks, index if is_known else other, Landmark())
+    if not is_known:
+        if index < 0:
+            index = other if other >= 0 else free_index(landmarks)
+        landmarks = replace_landmark(landmarks, index, new)
+    return ChainUpdate(landmarks, update.chain._replace(landmark=-1 if is_known else index))
 
 
 def chain_path(chain: EchoChain, echoes: int) -> float:

@@ -7,8 +7,9 @@ from a body between them. The segment between the feet on both axes stands for e
 
 import math
 
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import Landmark, segment_between
 from controller_fmu.parking.measurement.sensor import SensorPose
+from modelkit.geometry import Point
 
 BUMPER_SENSORS = 8
 """Numbers 0 to 3 in front, 4 to 7 behind."""
@@ -32,33 +33,7 @@ def facing_segment(a: SensorPose, a_range: float, b: SensorPose, b_range: float,
     base = math.sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y))
     if abs(a_range - b_range) > MAX_TILT_SLOPE * base + 3.0 * math.sqrt(2.0 * variance):
         return Landmark()
-    ax = a.x + a_range * a.axis_x
-    ay = a.y + a_range * a.axis_y
-    bx = b.x + b_range * b.axis_x
-    by = b.y + b_range * b.axis_y
-    length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
-    x = 0.5 * (ax + bx)
-    y = 0.5 * (ay + by)
-    ux = a.axis_x + b.axis_x
-    uy = a.axis_y + b.axis_y
-    along = (bx - ax) * -uy + (by - ay) * ux
-    towards = 1.0 if along > 0.0 else -1.0
-    heading = math.atan2(towards * (by - ay), towards * (bx - ax))
-    nx = -math.sin(heading)
-    ny = math.cos(heading)
-    turn = 4.0 * variance / max(length * length, variance)
-    return Landmark(
-        type=LandmarkType.SEGMENT,
-        x=x,
-        y=y,
-        heading=heading,
-        xx=variance * nx * nx,
-        xy=variance * nx * ny,
-        yy=variance * ny * ny,
-        hh=turn,
-        start=-0.5 * length,
-        end=0.5 * length,
-        start_variance=LATERAL_SIGMA * LATERAL_SIGMA,
-        end_variance=LATERAL_SIGMA * LATERAL_SIGMA,
-        confirmations=FACING_ECHOES,
-    )
+    foot = Point(a.x + a_range * a.axis_x, a.y + a_range * a.axis_y)
+    other = Point(b.x + b_range * b.axis_x, b.y + b_range * b.axis_y)
+    segment = segment_between(foot, other, Point(a.x, a.y), variance, LATERAL_SIGMA * LATERAL_SIGMA)
+    return segment._replace(confirmations=FACING_ECHOES)

@@ -39,8 +39,7 @@ def is_next_ray(last: Ray, ray: Ray) -> bool:
 def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:
     """Return whether the point (x, y) [m] lies in the free part of at least ``MIN_RAYS`` rays."""
     count = 0
-    for number in range(MAX_RAYS):
-        ray = rays[number]
+    for ray in rays:
         dx = x - ray.sensor.x
         dy = y - ray.sensor.y
         free = ray.range - RAY_MARGIN

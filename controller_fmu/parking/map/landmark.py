@@ -88,9 +88,36 @@ def offset_variance(landmark: Landmark, along: float) -> float:
     return across + 2.0 * along * lever + along * along * landmark.hh
 
 
+def segment_between(a: Point, b: Point, viewer: Point, variance: float, end_variance: float) -> Landmark:
+    """Return the segment between two points [m], the ``viewer`` on its left, its variances [m2] across and along."""
+    dx = b.x - a.x
+    dy = b.y - a.y
+    towards = 1.0 if dx * (viewer.y - a.y) - dy * (viewer.x - a.x) > 0.0 else -1.0
+    heading = math.atan2(towards * dy, towards * dx)
+    nx = -math.sin(heading)
+    ny = math.cos(heading)
+    square = dx * dx + dy * dy
+    half = 0.5 * math.sqrt(square)
+    return Landmark(
+        type=LandmarkType.SEGMENT,
+        x=0.5 * (a.x + b.x),
+        y=0.5 * (a.y + b.y),
+        heading=heading,
+        xx=variance * nx * nx,
+        xy=variance * nx * ny,
+        yy=variance * ny * ny,
+        hh=4.0 * variance / max(square, variance),
+        start=-half,
+        end=half,
+        start_variance=end_variance,
+        end_variance=end_variance,
+    )
+
+
 def replace_landmark(landmarks: tuple[Landmark, ...], index: int, landmark: Landmark) -> tuple[Landmark, ...]:
     """Return the landmarks with the one at ``index`` replaced."""
-    return tuple(landmark if number == index else landmarks[number] for number in range(MAX_LANDMARKS))
+    at = min(max(index, 0), MAX_LANDMARKS - 1)
+    return landmarks[:at] + (landmark,) + landmarks[at + 1 :]
 
 
 def free_index(landmarks: tuple[Landmark, ...]) -> int:

@@ -175,8 +175,7 @@ def range_by_map(
     A side does not go on beyond an open end where the sensor measures at least ``free`` [m] through it.
     """
     nearest = planned
-    for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
+    for landmark in landmarks:
         if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, nearest.distance):
             predicted = predict_range(sensor, with_open_ends_extended(landmark))
             if predicted.distance < free:

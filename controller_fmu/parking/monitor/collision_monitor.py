@@ -11,21 +11,13 @@ from controller_fmu.parking.geometry.outline import (
     OutlineFrame,
     VehicleOutline,
     max_point_speed_ratio,
-    outline_distance,
     outline_frame,
     pose_along_arc,
 )
 from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
-from controller_fmu.parking.map.landmark import (
-    MAX_LANDMARKS,
-    Landmark,
-    LandmarkType,
-    end_point,
-    start_point,
-)
+from controller_fmu.parking.map.landmark import Landmark, end_point, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import EchoSurface
 from modelkit.geometry import Point
@@ -138,23 +130,15 @@ def free_by_map(
     params: MonitorParams,
     mapping: MappingParams,
 ) -> float:
-    """Return how far [m] the outline goes before it comes too near to a confirmed landmark, else ``NO_LIMIT``."""
+    """Return how far [m] the outline goes before it comes too near to a confirmed landmark; ``NO_LIMIT``: farther."""
     free = NO_LIMIT
-    horizon = sweep.horizon
     outline = sweep.outline
-    reach = horizon + math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
-    for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
-        if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach + outline.half_length):
+    radius = math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
+    reach = sweep.horizon + radius + outline.half_length
+    for landmark in landmarks:
+        if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach):
             a = start_point(landmark)
-            b = end_point(landmark)
-            least = line_distance(a, b, sweep.here, outline) - MIN_APPROACH
-            comes_near = least - sweep.reach < params.map_distance
-            for step in range(1, (MAX_POSES if comes_near else 0) + 1):
-                travelled = horizon * step / MAX_POSES
-                distance = line_distance(a, b, sweep.poses[step - 1], outline)
-                if travelled < free and distance < params.map_distance and distance < least:
-                    free = horizon * (step - 1) / MAX_POSES
+            free = min(free, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
     return free
 
 
@@ -167,28 +151,28 @@ def free_by_echoes(
 ) -> float:
     """Return the same [m] for the echoes that are ``unexplained``, or not: those may approach by themselves."""
     free = NO_LIMIT
-    horizon = sweep.horizon
-    outline = sweep.outline
-    for number in range(MAX_SENSORS):
-        echo = echoes[number]
+    for echo in echoes:
         if echo.is_present and echo.is_unexplained == unexplained:
-            a = side_start(echo)
-            b = side_end(echo)
-            least = line_distance(a, b, sweep.here, outline) - MIN_APPROACH
-            comes_near = least - sweep.reach < params.map_distance
-            if echo.is_unexplained:
-                approach = max(echo.closing_speed, 0.0) * (motion.delay + MAX_RATE_TIME)
-                comes_near = least - sweep.reach < params.echo_distance + approach
-            for step in range(1, (MAX_POSES if comes_near else 0) + 1):
-                travelled = horizon * step / MAX_POSES
-                time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
-                required = params.map_distance
-                if echo.is_unexplained:
-                    required = params.echo_distance + echo.closing_speed * time
-                distance = line_distance(a, b, sweep.poses[step - 1], outline)
-                if travelled < free and distance < required and (distance < least or echo.closing_speed > 0.0):
-                    free = horizon * (step - 1) / MAX_POSES
+            kept = params.echo_distance if unexplained else params.map_distance
+            closing = echo.closing_speed if unexplained else 0.0
+            free = min(free, free_towards(motion, sweep, side_start(echo), side_end(echo), kept, closing))
     return free
+
+
+def free_towards(
+    motion: VehicleMotion, sweep: OutlineSweep, a: Point, b: Point, kept: float, closing_speed: float
+) -> float:
+    """Return how far [m] the outline goes before it is nearer than ``kept`` [m] to the line a-b, as that approaches."""
+    least = line_distance(a, b, sweep.here, sweep.outline) - MIN_APPROACH
+    if least - sweep.reach >= kept + closing_speed * (motion.delay + MAX_RATE_TIME):
+        return NO_LIMIT
+    for step in range(1, MAX_POSES + 1):
+        travelled = sweep.horizon * step / MAX_POSES
+        time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
+        distance = line_distance(a, b, sweep.poses[step - 1], sweep.outline)
+        if distance < kept + closing_speed * time and (distance < least or closing_speed > 0.0):
+            return sweep.horizon * (step - 1) / MAX_POSES
+    return NO_LIMIT
 
 
 def side_start(echo: EchoObstacle) -> Point:
@@ -205,8 +189,6 @@ def side_end(echo: EchoObstacle) -> Point:
 
 def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -> float:
     """Return the distance [m] from the outline of a vehicle at ``pose`` to a landmark, at most ``NO_LIMIT``."""
-    if landmark.type == LandmarkType.POINT:
-        return outline_distance(landmark.x, landmark.y, pose, outline)
     return line_distance(start_point(landmark), end_point(landmark), outline_frame(pose), outline)
 
 

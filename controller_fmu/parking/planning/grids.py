@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.geometry.polygons import segment_distance_squared
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.work import (
@@ -123,16 +124,6 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
                     work.cell_edge[place - 1] = edge
                 else:
                     work.cell_start[cell] = place + 1
-
-
-def segment_distance_squared(x: float, y: float, dx: float, dy: float) -> float:
-    """Return the squared distance [m2] from (x, y) to the segment from the origin to (dx, dy)."""
-    square = dx * dx + dy * dy
-    t = (x * dx + y * dy) / square if square > 0.0 else 0.0
-    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
-    ex = x - t * dx
-    ey = y - t * dy
-    return ex * ex + ey * ey
 
 
 def _cell(at: float, side: float, count: int) -> int:

@@ -4,10 +4,11 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, length_of, segment_point
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
+from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 
 MIN_CORRECTION_GATE = 0.2
@@ -22,24 +23,6 @@ MAX_FACE_ANGLE = 0.35
 """Such an end is known less exactly, and cars stand misaligned [rad]."""
 MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
-
-
-def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
-    """Return a parallel slot between what has been measured of its neighbours' ends that face it."""
-    corrected = candidate
-    across = candidate.row.frame.heading + 0.5 * math.pi
-    for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
-        angle = wrap_angle(landmark.heading - across)
-        off = min(abs(angle), math.pi - abs(angle))
-        is_face = landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params) and off < MAX_FACE_ANGLE
-        if is_face and length_of(landmark) > MIN_FACE:
-            middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
-            point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-            deep = candidate.row.side * point.y - candidate.front
-            if 0.0 < deep < CAR_WIDTH:
-                corrected = _with_edge(corrected, candidate, point.x)
-    return corrected
 
 
 def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float) -> SlotCandidate:
@@ -64,22 +47,29 @@ def correction_gate(sigma: float) -> float:
 def correct_slot(
     candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
 ) -> SlotCandidate:
-    """Return the slot between the flanks that have been measured, with the depth that is known now."""
+    """Return the slot between what has been measured of its neighbours' sides that face it, as deep as is known now."""
     corrected = candidate
-    if candidate.type == SlotType.PERPENDICULAR:
-        across = candidate.row.frame.heading + 0.5 * math.pi
-        for number in range(MAX_LANDMARKS):
-            landmark = landmarks[number]
-            is_side = landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params)
-            angle = wrap_angle(landmark.heading - across)
-            off = min(abs(angle), math.pi - abs(angle))
-            length = length_of(landmark)
-            if is_side and length > MIN_FACE and off < MAX_ANGLE:
-                middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
-                point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-                is_within = candidate.behind.end < point.x < candidate.ahead.start
-                if candidate.row.side * point.y > candidate.front and (length > MIN_FLANK or is_within):
-                    corrected = _with_edge(corrected, candidate, point.x)
-    if candidate.type == SlotType.PARALLEL:
-        corrected = _between_faces(candidate, landmarks, params)
+    for landmark in landmarks:
+        if landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params):
+            middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
+            point = point_to_frame(middle.x, middle.y, candidate.row.frame)
+            if _faces_slot(landmark, candidate, point):
+                corrected = _with_edge(corrected, candidate, point.x)
     return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))
+
+
+def _faces_slot(side: Landmark, candidate: SlotCandidate, middle: Point) -> bool:
+    """Return whether a side is a neighbour's end beside a parallel slot, a flank beside a perpendicular one.
+
+    ``middle`` [m] is its middle in the row's frame; a short side in a perpendicular gap may be a pillar's.
+    """
+    angle = wrap_angle(side.heading - candidate.row.frame.heading - 0.5 * math.pi)
+    off = min(abs(angle), math.pi - abs(angle))
+    length = length_of(side)
+    deep = candidate.row.side * middle.y - candidate.front
+    if length <= MIN_FACE or deep <= 0.0:
+        return False
+    if candidate.type == SlotType.PARALLEL:
+        return off < MAX_FACE_ANGLE and deep < CAR_WIDTH
+    is_within = candidate.behind.end < middle.x < candidate.ahead.start
+    return off < MAX_ANGLE and (length > MIN_FLANK or is_within)

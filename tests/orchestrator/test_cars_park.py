@@ -25,8 +25,6 @@ OPEN = {
     ("apa-driver-drives", "commonroad2"): "no_path in a slot that has one",
     ("apa-parallel-real", "commonroad2"): "no_path in a slot that has one",
     ("apa-parallel-tight", "commonroad1"): "left_path instead of a reason of the slot",
-    ("apa-parallel-tight", "commonroad2"): "sensor_loss, though no sensor is silent",
-    ("apa-parallel-tight", "commonroad3"): "sensor_loss, though no sensor is silent",
     ("apa-pedestrian", "preview"): "blocked, though the pedestrian has gone",
 }
 """Scenario and car that do not end as they should -> how they end; each is to be taken out once it does."""

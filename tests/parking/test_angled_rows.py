@@ -8,10 +8,13 @@ import pytest
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_to_frame
-from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
+from controller_fmu.parking.map.chain_update import SideReading
 from controller_fmu.parking.map.landmark import LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
+from controller_fmu.parking.map.oblique_side import ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.sensor import reading_status, sensor_pose
 from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot
 from controller_fmu.parking.slots.goal import goal_pose
@@ -19,7 +22,7 @@ from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import SlotRow
 from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
-from tests.parking.simulated_pass import CAR, drive_past
+from tests.parking.simulated_pass import CAR, drive_past, exact_ranges
 
 OUTLINE = vehicle_outline(CAR, 0.95)
 LENGTH, WIDTH = 4.4, 1.8
@@ -145,3 +148,15 @@ def test_cars_that_stand_square_are_no_angled_row() -> None:
     along = [Box(place, -0.9, 0.0, LENGTH, WIDTH) for place in (-5.0, 5.0)]
     for boxes in (square, along):
         assert passed(boxes, 8.0).row.used == 0
+
+
+def test_a_turning_sensor_shows_no_oblique_side() -> None:
+    """A car that turns at a radius of 1.5 m beside a car's end: the cone sweeps through what is free."""
+    update, sensors = ObliqueUpdate(), CAR.ultrasonic
+    for step in range(50):
+        vehicle = pose_along_arc(Pose(), -0.04 * step, -0.66)
+        measured = exact_ranges(vehicle, [Box(3.8, -2.5, 0.0, 4.0, 1.8)], sensors)[11]
+        sensor = sensor_pose(sensors.mounts[11], sensors.half_angle, vehicle)
+        reading = SideReading(sensor, reading_status(measured, sensors), measured, 1e-4)
+        update = update_oblique_sides(update.boundaries, reading)
+        assert not any(side.type for side in update.passed)

@@ -3,7 +3,8 @@
 On a side whose normal is turned by more than the half cone against the sensor's axis no foot of a perpendicular is in
 view. The echo comes from the boundary of the cone on that side, so its place is known: p = s + r u, u the boundary. The
 points of one side lie on a line, and the line's direction tells that they came from the boundary: the ranges of feet
-and corners change by less than sin(cone) per metre, and would make lines less oblique than the cone is wide.
+and corners change by less than sin(cone) per metre, and would make lines less oblique than the cone is wide. A sensor
+that turns by q moves the boundary's point by r q, whatever it measures: then the line's direction tells nothing.
 """
 
 import math
@@ -70,6 +71,8 @@ class BoundaryRun(NamedTuple):
     yy: float = 0.0
     first: Point = Point(0.0, 0.0)
     last: Point = Point(0.0, 0.0)
+    sensor: SensorPose = SensorPose()
+    """At the first of them."""
     range: float = 0.0
     """Of the last echo [m]; ``NO_HIT`` after none, 0 before the first reading."""
     begins: int = SideEnding.HIDDEN
@@ -105,8 +108,9 @@ def update_oblique_sides(boundaries: ConeBoundaries, reading: SideReading) -> Ob
         if over:
             ends = side_ending(run.range, reading.range)
             side = side_of(run, reading.sensor, turn, ends, reading.variance)
+            side = Landmark() if _is_turned(run, reading.sensor) else side
             update = update._replace(passed=update.passed[:boundary] + (side,) + update.passed[boundary + 1 :])
-        run = next_run(run, reading.status, point, reading.range, over)
+        run = next_run(run, reading.status, reading.sensor, point, reading.range, over)
         now = side_of(run, reading.sensor, turn, int(SideEnding.HIDDEN), reading.variance)
         update = update._replace(
             boundaries=ConeBoundaries(runs[:boundary] + (run,) + runs[boundary + 1 :]),
@@ -152,12 +156,15 @@ def is_over(run: BoundaryRun, status: int, point: Point, measured: float, varian
     return off * off > LINE_SIGMA * LINE_SIGMA * (variance + known)
 
 
-def next_run(run: BoundaryRun, status: int, point: Point, measured: float, over: bool) -> BoundaryRun:
+def next_run(
+    run: BoundaryRun, status: int, sensor: SensorPose, point: Point, measured: float, over: bool
+) -> BoundaryRun:
     """Return a run after a reading at ``measured`` [m], or the one that begins after it is ``over``."""
     if status != ReadingStatus.ECHO:
         return BoundaryRun(range=NO_HIT) if over or run.n == 0 else run._replace(lost=run.lost + 1)
     if over or run.n == 0:
-        return with_point(BoundaryRun(begins=side_ending(measured, run.range)), point, measured)
+        begun = BoundaryRun(sensor=sensor, begins=side_ending(measured, run.range))
+        return with_point(begun, point, measured)
     dx = point.x - run.last.x
     dy = point.y - run.last.y
     if run.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
@@ -179,6 +186,7 @@ def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
         run.yy + dy * dy,
         first,
         point,
+        run.sensor,
         measured,
         run.begins,
     )
@@ -250,6 +258,15 @@ def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, varian
         end_known=last_known if forward else first_known,
     )
     return _with_opening(side, angle, angle - half, run.range)
+
+
+def _is_turned(run: BoundaryRun, sensor: SensorPose) -> bool:
+    """Return whether a sensor has turned so far over a run that its points may lie obliquely for that alone."""
+    before = run.sensor
+    turn = abs(before.axis_x * sensor.axis_y - before.axis_y * sensor.axis_x)
+    dx = sensor.x - before.x
+    dy = sensor.y - before.y
+    return turn * run.range > OBLIQUE_MARGIN * math.sqrt(dx * dx + dy * dy)
 
 
 def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: float) -> Landmark:

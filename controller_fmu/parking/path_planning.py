@@ -228,8 +228,13 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
         intended = abs(kerb_shift(slot, outline, params.slot)) + abs(params.drive.rolling_offset)
     across = max(params.final.accepted - params.slot.confidence * sigma, min(intended, params.final.accepted))
     turn = params.final.accepted_heading - params.slot.confidence * slot.row.heading_sigma
-    near = is_near(pose, goal_pose(flush, outline, params.slot), along, across, turn)
-    return near and overhang_of(slot, outline, pose) < most_overhang(slot, outline, params.slot)
+    overhang = overhang_of(slot, outline, pose)
+    most = most_overhang(slot, outline, params.slot)
+    beside = slot.depth - 2.0 * outline.half_width + overhang
+    is_at_goal = is_near(pose, goal_pose(slot, outline, params.slot), along, params.final.position, turn)
+    if slot.type == SlotType.PARALLEL and (is_at_goal or params.slot.kerb_min < beside < params.slot.kerb_max):
+        across = max(across, most)
+    return is_near(pose, goal_pose(flush, outline, params.slot), along, across, turn) and overhang < most
 
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:

@@ -32,6 +32,7 @@ from controller_fmu.parking.measurement.sensor import (
     reading_status,
     sensor_pose,
 )
+from controller_fmu.parking.measurement.silent_sensor import is_silent
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
@@ -52,8 +53,14 @@ from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
-from controller_fmu.parking.slots.slot_filter import SlotFilter, predict_slot, update_slot
+from controller_fmu.parking.slots.slot_filter import (
+    SlotFilter,
+    count_absent,
+    predict_slot,
+    update_slot,
+)
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
+from modelkit.car import car_length
 from modelkit.vocabulary import Pose
 
 YIELD_TIME = 3.0
@@ -69,6 +76,8 @@ HALF_SENSOR_SPACING = 0.25
 """Half of the distance [m] of the two middle sensors of a bumper, at y = +-0.25 m (``modelkit.car``)."""
 MAX_REST = 0.3
 """What moves more slowly [m/s] stands: people walk at 0.5 m/s and more."""
+ABSENT_ECHOES = 10
+"""Measurements in a row through both neighbours: a working sensor loses so many echoes once in 1e13 times."""
 SAME_GAP = 0.5
 """Two gaps whose corners lie nearer than this [m] are one: sides end within 0.3 m, odometry drifts by less."""
 
@@ -84,7 +93,8 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(MAX_SENSORS))
         slot_filter = _update_slot_filter(memory, inputs, params)
-        memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
+        search = with_slot_type(memory.search._replace(slot_filter=slot_filter), params)
+        memory = memory._replace(search=search)
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
         return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
@@ -112,10 +122,28 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     for number in range(MAX_SENSORS):
         reading = memory.perception.cycle.readings[number]
-        if reading_status(reading, sensors) == ReadingStatus.ECHO:
-            sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+        status = reading_status(reading, sensors)
+        sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+        if status == ReadingStatus.ECHO:
             slot_filter = update_slot(slot_filter, search.slot, sensor, reading, variance, params.mapping.gate)
+        is_silent_one = is_silent(memory.perception.local_map.missed, number)
+        if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO) and not is_silent_one:
+            slot_filter = count_absent(slot_filter, search.slot, sensor, reading)
     return slot_filter
+
+
+def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgress:
+    """Return the search with a slot along the road that was taken for one across it, between cars not so deep.
+
+    In a gap too short for that the vehicle stands across the road whatever its neighbours are.
+    """
+    slot = search.slot
+    is_inferred = params.slot.wanted == SlotKind.NONE and not slot.is_external and slot.slope == 0.0
+    least_length = car_length(params.car) + params.slot.room_along
+    is_wide = slot.ahead.start - slot.behind.end >= least_length
+    if not is_inferred or not is_wide or search.slot_filter.absent < ABSENT_ECHOES:
+        return search
+    return search._replace(slot=slot._replace(type=SlotType.PARALLEL, is_nose_in=False))
 
 
 def _with_tracks(

@@ -9,6 +9,8 @@ import pytest
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import ReadingStatus, reading_status, sensor_pose
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.perception import with_slot_type
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.row import RowMember, SlotRow
 from controller_fmu.parking.slots.slot_filter import (
@@ -17,11 +19,13 @@ from controller_fmu.parking.slots.slot_filter import (
     STATE_COUNT,
     SlotFilter,
     begin_slot_filter,
+    count_absent,
     predict_echo,
     predict_slot,
     slot_of_filter,
     update_slot,
 )
+from controller_fmu.parking.state import SearchProgress
 from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, exact_ranges
@@ -112,6 +116,27 @@ def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     assert matrix(after) == pytest.approx(p - np.outer(p @ h, p @ h) / s)
     far = update_slot(before, slot, sensor, echo.predicted.distance + 1.0, 1e-4, 9.0)
     assert far == before, "an echo of something else"
+
+
+@pytest.mark.parametrize(("depth", "absent"), [(4.5, 0), (1.9, 12)])
+def test_cars_along_the_road_contradict_a_slot_across_it(depth: float, absent: int) -> None:
+    """Neighbours as deep as a car is wide: beside a vehicle deep between them nothing is measured."""
+    boxes = [Box(x, -0.5 * depth, 0.0, 1.8, depth) for x in (-0.9, WIDTH + 0.9)]
+    slot = slot_at()._replace(depth=50.0)
+    slot_filter = begin_slot_filter(slot)
+    for _ in range(12):
+        vehicle = Pose(1.5, -2.7, 0.5 * math.pi)
+        measured = exact_ranges(vehicle, boxes, CAR.ultrasonic)[9]
+        sensor = sensor_pose(CAR.ultrasonic.mounts[9], CAR.ultrasonic.half_angle, vehicle)
+        slot_filter = count_absent(slot_filter, slot, sensor, measured)
+    assert slot_filter.absent == absent
+    wide = slot._replace(ahead=slot.ahead._replace(start=6.5))
+    for width, kind in (
+        (slot, SlotType.PERPENDICULAR),
+        (wide, SlotType.PARALLEL if absent else SlotType.PERPENDICULAR),
+    ):
+        search = SearchProgress(slot=width, slot_filter=slot_filter)
+        assert with_slot_type(search, ParkingParams(car=CAR)).slot.type == kind
 
 
 def errors_after_drive(seed: int) -> tuple[float, float, float]:

@@ -308,3 +308,30 @@ def test_how_wide_bays_are_shows_by_cars_beside_each_other(pitch: float, gap: fl
     row = SlotRow(members=(*cars, *(RowMember(),) * (MAX_MEMBERS - 3)), used=3)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, ahead=cars[0], behind=cars[1])
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_pillar_bounds_the_gap_though_the_car_behind_it_is_mapped_too(order: int) -> None:
+    """The flank of a pillar 0.5 m inside the gap that was seen from the road, and of its car; or only its corner."""
+    row = SlotRow(Pose(), -1.0, used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=RowMember(3.2, 5.0))
+    post = Landmark(LandmarkType.POINT, 2.7, -0.7, confirmations=20)
+    for inner in (side(2.7, -0.8, 90.0, 0.4), post):
+        landmarks = (inner, side(3.22, -2.5, 90.0, 2.0))[::order]
+        corrected = correct_slot(slot, landmarks + (Landmark(),) * (MAX_LANDMARKS - 2), OUTLINE, MappingParams())
+        assert corrected.ahead.start == pytest.approx(2.7)
+
+
+def test_a_car_that_has_moved_away_leaves_its_flank_to_bound_the_gap() -> None:
+    row = SlotRow(Pose(), -1.0, used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.3, 0.5), ahead=RowMember(3.5, 5.3))
+    flank = side(0.0, -2.5, 90.0, 2.0)
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
+    assert corrected.behind.end == pytest.approx(0.0)
+
+
+def test_two_sides_of_one_car_count_as_one_car() -> None:
+    """One car is turned by 4 deg, the other by -4 deg; of the first there are two sides in the map."""
+    cars = [side(0.0, 0.0, 4.0, 1.8), side(-4.4, 0.0, -4.0, 1.8)]
+    once, twice = (row_beside(sides, 0.0).frame.heading for sides in (cars, [*cars, side(0.3, 0.02, 4.0, 1.2)]))
+    assert math.degrees(twice - once) == pytest.approx(0.0, abs=0.1)

@@ -7,7 +7,13 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.slots.candidate import (
+    CAR_WIDTH,
+    SlotCandidate,
+    SlotType,
+    gap_depth,
+    is_too_short_for_car,
+)
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 
@@ -25,16 +31,23 @@ MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
 
 
-def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float) -> SlotCandidate:
-    """Return a slot with the edge that a flank at ``x`` [m] along its row is.
+def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float, is_of_car: bool) -> SlotCandidate:
+    """Return a slot with the edge that a flank at ``x`` [m] along its row is; ``is_of_car``: of no pillar.
 
     It bounds the gap wherever it stands in it: the corner seen from the road may have been moving. Outside the gap it
-    corrects a corner by no more than that is uncertain: a flank farther out stands behind a pillar.
+    corrects an edge by no more than that is uncertain: a flank farther out stands behind a pillar. The first flank of a
+    car may be as far out as half of it, since the car may have moved away.
     """
     middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
-    if x < middle and x > candidate.behind.end - correction_gate(candidate.behind.end_sigma):
+    is_behind = x < middle
+    known = candidate if candidate.type == SlotType.PARALLEL else corrected
+    before = known.behind.end if is_behind else known.ahead.start
+    is_first = before == (candidate.behind.end if is_behind else candidate.ahead.start)
+    sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
+    gate = max(correction_gate(sigma), 0.5 * CAR_WIDTH if is_first and is_of_car else 0.0)
+    if is_behind and x > before - gate:
         return corrected._replace(behind=corrected.behind._replace(end=x))
-    if x >= middle and x < candidate.ahead.start + correction_gate(candidate.ahead.start_sigma):
+    if not is_behind and x < before + gate:
         return corrected._replace(ahead=corrected.ahead._replace(start=x))
     return corrected
 
@@ -50,26 +63,47 @@ def correct_slot(
     """Return the slot between what has been measured of its neighbours' sides that face it, as deep as is known now."""
     corrected = candidate
     for landmark in landmarks:
-        if landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params):
+        if is_confirmed(landmark, params):
             middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
             point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-            if _faces_slot(landmark, candidate, point):
-                corrected = _with_edge(corrected, candidate, point.x)
+            if candidate.type != SlotType.PARALLEL:
+                corrected = _beside_flank(corrected, candidate, landmark, point, outline)
+            elif _is_end_of_neighbour(landmark, candidate, point):
+                corrected = _with_edge(corrected, candidate, point.x, False)
     return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))
 
 
-def _faces_slot(side: Landmark, candidate: SlotCandidate, middle: Point) -> bool:
-    """Return whether a side is a neighbour's end beside a parallel slot, a flank beside a perpendicular one.
-
-    ``middle`` [m] is its middle in the row's frame; a short side in a perpendicular gap may be a pillar's.
-    """
-    angle = wrap_angle(side.heading - candidate.row.frame.heading - 0.5 * math.pi)
-    off = min(abs(angle), math.pi - abs(angle))
-    length = length_of(side)
+def _is_end_of_neighbour(side: Landmark, candidate: SlotCandidate, middle: Point) -> bool:
+    """Return whether a side is a neighbour's end beside a parallel slot; its middle [m] is in the row's frame."""
     deep = candidate.row.side * middle.y - candidate.front
-    if length <= MIN_FACE or deep <= 0.0:
-        return False
-    if candidate.type == SlotType.PARALLEL:
-        return off < MAX_FACE_ANGLE and deep < CAR_WIDTH
-    is_within = candidate.behind.end < middle.x < candidate.ahead.start
-    return off < MAX_ANGLE and (length > MIN_FLANK or is_within)
+    is_long = side.type == LandmarkType.SEGMENT and length_of(side) > MIN_FACE
+    return is_long and _angle_to_row(side, candidate) < MAX_FACE_ANGLE and 0.0 < deep < CAR_WIDTH
+
+
+def _angle_to_row(side: Landmark, candidate: SlotCandidate) -> float:
+    """Return by how much a side is turned against the direction into the slot [rad], without sign."""
+    angle = wrap_angle(side.heading - candidate.row.frame.heading - 0.5 * math.pi)
+    return min(abs(angle), math.pi - abs(angle))
+
+
+def _beside_flank(
+    corrected: SlotCandidate, candidate: SlotCandidate, landmark: Landmark, middle: Point, outline: VehicleOutline
+) -> SlotCandidate:
+    """Return a perpendicular slot beside a landmark, if that is a neighbour's flank, or a post or pillar in the gap.
+
+    ``middle`` [m] is the landmark's in the row's frame.
+    """
+    deep = candidate.row.side * middle.y - candidate.front
+    length = length_of(landmark)
+    is_behind = 2.0 * middle.x < candidate.behind.end + candidate.ahead.start
+    inside = middle.x - candidate.behind.end if is_behind else candidate.ahead.start - middle.x
+    if landmark.type == LandmarkType.POINT or length <= MIN_FACE:
+        sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
+        room = candidate.ahead.start - candidate.behind.end - 2.0 * outline.half_width
+        is_post = correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
+        return _with_edge(corrected, candidate, middle.x, False) if is_post else corrected
+    side_length = candidate.behind.end_length if is_behind else candidate.ahead.start_length
+    is_of_car = length > MIN_FLANK and not is_too_short_for_car(side_length)
+    if deep > 0.0 and _angle_to_row(landmark, candidate) < MAX_ANGLE and (length > MIN_FLANK or inside > 0.0):
+        return _with_edge(corrected, candidate, middle.x, is_of_car)
+    return corrected

@@ -33,6 +33,8 @@ MEMBER_GAP = 0.35
 """Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
 ASKEW_VARIANCE = 0.0025
 """Of the misalignment of cars in a row, by up to 5 deg either way [rad2]."""
+MIN_HEADING_VARIANCE = 1e-6
+"""Of a side that claims to be known better [rad2]: the odometry's drift over half a metre."""
 UNEVEN_SIGMA = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9
@@ -193,23 +195,22 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     """Return how far a row is turned against its frame: half way between the road and its cars' mean heading.
 
     The road follows from the headings of all sides, those of cars and what lies deeper, and from the line through the
-    row. A line that contradicts the headings is none of the row: one of its cars has moved out of it.
+    row. A line that contradicts the headings is none of the row: one of its cars has moved out of it. The sides of one
+    car share its misalignment.
     """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
-    deepest = NO_MEMBER
-    for number in range(MAX_MEMBERS):
-        if number < row.used:
-            deepest = min(deepest, row.members[number].front + ROW_DEPTH)
+    deepest = _nearest_front(row) + ROW_DEPTH
     total = 0.0
     turn = 0.0
     of_cars = 0.0
     turn_of_cars = 0.0
     variance = 0.0
+    sides = tuple(side_as_member(landmarks[number], row.frame, row.side, params) for number in range(MAX_LANDMARKS))
     for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
-        member = side_as_member(landmark, row.frame, row.side, params)
+        member = sides[number]
         if member.end > member.start:
-            weight = 1.0 / (landmark.hh + ASKEW_VARIANCE)
+            weight = _side_weight(landmarks, sides, number)
             weighted = weight * wrap_angle(landmark.heading - along)
             total += weight
             turn += weighted
@@ -228,6 +229,27 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
         total += weight
     sigma = 0.5 * math.sqrt(1.0 / total + variance / (of_cars * of_cars))
     return RowDirection(0.5 * (turn / total + by_cars), sigma)
+
+
+def _nearest_front(row: SlotRow) -> float:
+    """Return the front [m] of a row's member nearest to the road."""
+    nearest = NO_MEMBER
+    for number in range(MAX_MEMBERS):
+        if number < row.used:
+            nearest = min(nearest, row.members[number].front)
+    return nearest
+
+
+def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], at: int) -> float:
+    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one."""
+    side = sides[at]
+    known = 0.0
+    for number in range(MAX_LANDMARKS):
+        other = sides[number]
+        overlaps = other.end > side.start and side.end > other.start
+        if other.end > other.start and overlaps and abs(other.front - side.front) < ROW_DEPTH:
+            known += 1.0 / max(landmarks[number].hh, MIN_HEADING_VARIANCE)
+    return 1.0 / (max(landmarks[at].hh, MIN_HEADING_VARIANCE) * (1.0 + ASKEW_VARIANCE * known))
 
 
 def _line_direction(row: SlotRow) -> RowDirection:

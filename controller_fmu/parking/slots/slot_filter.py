@@ -23,7 +23,9 @@ from controller_fmu.parking.measurement.predicted_range import (
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from controller_fmu.parking.slots.candidate import (
     CAR_LENGTH,
+    CAR_LENGTH_SIGMA,
     CAR_WIDTH,
+    CAR_WIDTH_SIGMA,
     UNKNOWN_DEPTH,
     SlotCandidate,
     SlotType,
@@ -31,7 +33,7 @@ from controller_fmu.parking.slots.candidate import (
     is_too_short_for_car,
     row_point,
 )
-from controller_fmu.parking.slots.row import RowMember, SlotRow
+from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -58,6 +60,8 @@ class SlotFilter(NamedTuple):
     into_x: float = 0.0
     into_y: float = 1.0
     is_begun: bool = False
+    absent: int = 0
+    """Measurements through both neighbours in a row, where cars that stand across the road had to be."""
 
 
 class SlotEcho(NamedTuple):
@@ -110,14 +114,24 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
 
 
 def _front_heading(row: SlotRow, member: RowMember, side_length: float) -> float:
-    """Return the heading [rad] of a member's front as it was passed; a pillar stands along the row."""
+    """Return the heading [rad] of a member's front as it was passed; a pillar stands along the row.
+
+    A car stands nearly so: a short look at its front shows less of its heading than that.
+    """
     if is_too_short_for_car(side_length):
         return row.frame.heading
     length = max(member.end - member.start, FRONT_SIGMA)
-    return row.frame.heading + row.side * math.atan2(member.end_front - member.start_front, length)
+    share = _heading_variance(member, side_length) / _front_variance(member, side_length)
+    return row.frame.heading + share * row.side * math.atan2(member.end_front - member.start_front, length)
 
 
 def _heading_variance(member: RowMember, side_length: float) -> float:
+    """Return the variance [rad2] of that heading: of what was observed, and of how cars stand."""
+    return 1.0 / (1.0 / _front_variance(member, side_length) + 1.0 / ASKEW_VARIANCE)
+
+
+def _front_variance(member: RowMember, side_length: float) -> float:
+    """Return the variance [rad2] of a front's heading by what was observed of it alone."""
     if is_too_short_for_car(side_length):
         return FRONT_SIGMA * FRONT_SIGMA
     length = max(member.end - member.start, FRONT_SIGMA)
@@ -186,6 +200,29 @@ def update_slot(
         for number in range(STATE_COUNT * STATE_COUNT)
     )
     return slot_filter._replace(state=state, covariance=covariance)
+
+
+def count_absent(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose, measured: float) -> SlotFilter:
+    """Return the filter after a reading of ``measured`` [m], with those counted that pass through a neighbour's flank.
+
+    Beside a perpendicular slot cars are as deep as they are long. Those along the road are no deeper than wide: where
+    no corner of such a car is in view an echo tells which they are.
+    """
+    if slot.type != SlotType.PERPENDICULAR:
+        return slot_filter
+    echo = predict_echo(slot_filter, slot, sensor)
+    state = slot_filter.state
+    x = echo.predicted.x - 0.5 * (state[0] + state[AHEAD_OFFSET])
+    y = echo.predicted.y - 0.5 * (state[1] + state[AHEAD_OFFSET + 1])
+    deep = x * slot_filter.into_x + y * slot_filter.into_y
+    beyond_width = deep - CAR_WIDTH - 2.0 * CAR_WIDTH_SIGMA
+    tells = beyond_width * sensor.cone_cos > CONE_SPREAD * sensor.cone_sin * echo.predicted.distance
+    if not echo.is_known or not tells or deep > CAR_LENGTH - 2.0 * CAR_LENGTH_SIGMA:
+        return slot_filter
+    beyond = measured - echo.predicted.distance
+    if beyond > 0.5 * CAR_WIDTH:
+        return slot_filter._replace(absent=slot_filter.absent + 1)
+    return slot_filter._replace(absent=0) if beyond < CAR_WIDTH_SIGMA else slot_filter
 
 
 def _row_product(covariance: tuple[float, ...], gradient: tuple[float, ...], row: int) -> float:
@@ -335,8 +372,8 @@ def _row_turn(slot: SlotCandidate, state: tuple[float, ...]) -> float:
 
 def _behind_share(slot: SlotCandidate) -> float:
     """Return the weight of the neighbour behind in the mean of both headings."""
-    behind = 1.0 / _heading_variance(slot.behind, slot.behind.end_length)
-    return behind / (behind + 1.0 / _heading_variance(slot.ahead, slot.ahead.start_length))
+    behind = 1.0 / _front_variance(slot.behind, slot.behind.end_length)
+    return behind / (behind + 1.0 / _front_variance(slot.ahead, slot.ahead.start_length))
 
 
 def _sum_variance(covariance: tuple[float, ...], behind: Pose, ahead: Pose) -> float:

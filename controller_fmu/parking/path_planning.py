@@ -1,6 +1,7 @@
 """The planner in the system: a request from the slot as it is known now, continued a bounded amount at each sample."""
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.common.external_slot import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
@@ -98,31 +99,54 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
 
     An object that left a slot had come between the cones of two sensors: neither has all of its landmark in view.
     """
-    perception = memory.perception
-    if not perception.cycle.is_new:
+    if not memory.perception.cycle.is_new:
         return memory
-    landmarks = perception.local_map.landmarks
-    remembered = perception.remembered
-    echoes = perception.echoes
+    views = tuple(_view_at_rest(number, memory, inputs, params) for number in range(MAX_SENSORS))
+    remembered = tuple(_still_there(echo, views) for echo in memory.perception.remembered)
+    memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
+    echoes = tuple(_passed(memory.perception.echoes[number], views[number]) for number in range(MAX_SENSORS))
+    memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
+    landmarks = tuple(_contradict_by_all(item, views, params) for item in memory.perception.local_map.landmarks)
+    return with_landmarks(memory, landmarks)
+
+
+class ViewAtRest(NamedTuple):
+    """The middle of a sensor's cone, and up to which distance [m] nothing is in it; below zero: not known."""
+
+    sensor: SensorPose
+    limit: float = -1.0
+
+
+def _view_at_rest(number: int, memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ViewAtRest:
+    """Return what the newest reading of a sensor says of the middle of its cone."""
     sensors = params.car.ultrasonic
-    for number in range(MAX_SENSORS):
-        reading = perception.cycle.readings[number]
-        status = reading_status(reading, sensors)
-        if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
-            middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
-            limit = reading - params.monitor.unexplained
-            landmarks = tuple(contradict_at_rest(landmark, middle, limit, params) for landmark in landmarks)
-            remembered = tuple(_still_there(echo, middle, limit) for echo in remembered)
-            own = echoes[number]
-            if own.is_present and planar_distance(own.x, own.y, middle.x, middle.y) < limit:
-                echoes = echoes[:number] + (EchoObstacle(),) + echoes[number + 1 :]
-    perception = perception._replace(remembered=remembered, echoes=echoes)
-    return with_landmarks(memory._replace(perception=perception), landmarks)
+    reading = memory.perception.cycle.readings[number]
+    status = reading_status(reading, sensors)
+    is_known = status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO)
+    middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
+    return ViewAtRest(middle, reading - params.monitor.unexplained if is_known else -1.0)
 
 
-def _still_there(echo: EchoObstacle, sensor: SensorPose, limit: float) -> EchoObstacle:
-    """Return an echo unless a sensor measured at least ``limit`` [m] through it."""
-    return EchoObstacle() if predict_range_to_point(sensor, echo.x, echo.y).distance < limit else echo
+def _passed(echo: EchoObstacle, view: ViewAtRest) -> EchoObstacle:
+    """Return the echo of a sensor unless it measures through its place now."""
+    is_passed = echo.is_present and planar_distance(echo.x, echo.y, view.sensor.x, view.sensor.y) < view.limit
+    return EchoObstacle() if is_passed else echo
+
+
+def _still_there(echo: EchoObstacle, views: tuple[ViewAtRest, ...]) -> EchoObstacle:
+    """Return an echo unless a sensor measures through it."""
+    is_gone = False
+    for view in views:
+        if predict_range_to_point(view.sensor, echo.x, echo.y).distance < view.limit:
+            is_gone = True
+    return EchoObstacle() if is_gone else echo
+
+
+def _contradict_by_all(landmark: Landmark, views: tuple[ViewAtRest, ...], params: ParkingParams) -> Landmark:
+    """Return a landmark after the readings of all sensors."""
+    for view in views:
+        landmark = contradict_at_rest(landmark, view.sensor, view.limit, params)
+    return landmark
 
 
 def contradict_at_rest(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
@@ -282,8 +306,8 @@ def _present_echoes(memory: ParkingMemory, outline: VehicleOutline, pose: Pose) 
 
 def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> ParkingMemory:
     """Return the memory with other landmarks in its map."""
-    local_map = memory.perception.local_map._replace(landmarks=landmarks)
-    return memory._replace(perception=memory.perception._replace(local_map=local_map))
+    perception = memory.perception
+    return memory._replace(perception=perception._replace(local_map=perception.local_map._replace(landmarks=landmarks)))
 
 
 def _as_obstacle(

@@ -104,7 +104,7 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
     views = tuple(_view_at_rest(number, memory, inputs, params) for number in range(MAX_SENSORS))
     remembered = tuple(_still_there(echo, views) for echo in memory.perception.remembered)
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
-    echoes = tuple(_passed(memory.perception.echoes[number], views[number]) for number in range(MAX_SENSORS))
+    echoes = tuple(_without_passed(memory.perception.echoes[number], views[number]) for number in range(MAX_SENSORS))
     memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
     landmarks = tuple(_contradict_by_all(item, views, params) for item in memory.perception.local_map.landmarks)
     return with_landmarks(memory, landmarks)
@@ -127,7 +127,7 @@ def _view_at_rest(number: int, memory: ParkingMemory, inputs: ParkingSystemInput
     return ViewAtRest(middle, reading - params.monitor.unexplained if is_known else -1.0)
 
 
-def _passed(echo: EchoObstacle, view: ViewAtRest) -> EchoObstacle:
+def _without_passed(echo: EchoObstacle, view: ViewAtRest) -> EchoObstacle:
     """Return the echo of a sensor unless it measures through its place now."""
     is_passed = echo.is_present and planar_distance(echo.x, echo.y, view.sensor.x, view.sensor.y) < view.limit
     return EchoObstacle() if is_passed else echo

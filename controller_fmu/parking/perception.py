@@ -93,8 +93,8 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(MAX_SENSORS))
         slot_filter = _update_slot_filter(memory, inputs, params)
-        search = with_slot_type(memory.search._replace(slot_filter=slot_filter), params)
-        memory = memory._replace(search=search)
+        memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
+        memory = memory._replace(search=with_slot_type(memory.search, params))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
         return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))

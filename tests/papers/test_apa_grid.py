@@ -1,5 +1,6 @@
 """The grid study at a reduced size: no contact in any run, every run ends parked or failed with a reason."""
 
+import random
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile
-from orchestrator.studies.parking.cases import CARS, cases, parameters
+from orchestrator.studies.parking.cases import CARS, SEED_STRIDE, cases, parameters
+from orchestrator.studies.parking.imperfect import imperfect
 from orchestrator.studies.parking.parkings import GridRun, parkings
 from orchestrator.studies.parking.study import study, study_of, totals
 from orchestrator.studies.sweep.engines import choose_task
@@ -49,6 +51,12 @@ def test_the_grid_covers_what_it_says() -> None:
         assert {getattr(case, field) for case in part} == {getattr(case, field) for case in grid}
     assert parameters(grid[5]) == parameters(cases(0)[5])
     assert parameters(grid[5]) != parameters(cases(1)[5])
+
+
+def test_any_lot_gives_seeds_that_the_sensors_take() -> None:
+    lot = 900_022
+    for vehicle in (parameters(cases(lot)[5])[0], imperfect(5 + SEED_STRIDE * lot, random.Random(1))):
+        assert 0 <= vehicle["ultrasonic.seed"] < 2**31
 
 
 @needs_compiler

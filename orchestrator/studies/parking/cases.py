@@ -46,6 +46,8 @@ BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
 SPEEDS = (1.0, 2.5, 20.0 / 3.6)
 SEED_STRIDE = 10_000
+SEED_COUNT = 2**31
+"""A sensor's seed is below it, whatever the ``lot``."""
 STOP_TIME = 150.0
 WALL_DISTANCE = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
@@ -100,7 +102,7 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     vehicle |= {
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,
-        "ultrasonic.seed": case.number + 1 + SEED_STRIDE * case.lot,
+        "ultrasonic.seed": (case.number + 1 + SEED_STRIDE * case.lot) % SEED_COUNT,
     }
     vehicle |= {"odometry.ideal": False, "odometry.radius_error": draw.uniform(-0.005, 0.005), "odometry.tick": 0.02}
     vehicle |= {"odometry.steering_offset": draw.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}

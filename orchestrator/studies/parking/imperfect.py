@@ -3,7 +3,7 @@
 import random
 from typing import Any
 
-from orchestrator.studies.parking.cases import BODY
+from orchestrator.studies.parking.cases import BODY, SEED_COUNT
 
 
 def imperfect(seed: int, draw: random.Random) -> dict[str, Any]:
@@ -12,7 +12,7 @@ def imperfect(seed: int, draw: random.Random) -> dict[str, Any]:
         "body": BODY["double_track"],
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,
-        "ultrasonic.seed": seed,
+        "ultrasonic.seed": seed % SEED_COUNT,
         "steering.dead_time": 0.04,
         "steering.lag": 0.05,
         "steering.backlash": 0.03,

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from foxglove_schemas_protobuf.Log_pb2 import Log
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 from mcap.records import Chunk
@@ -213,6 +214,37 @@ def test_a_part_file_gets_its_name_only_when_complete(tmp_path: Path) -> None:
     file.close()
     assert (tmp_path / "x.mcap").exists()
     assert not (tmp_path / "x.mcap.part").exists()
+
+
+def _write_chunks(path: Path) -> bytes:
+    file = McapFile(path)
+    channel = file.add_channel("/log", Log)
+    for number in range(5):
+        file.write(channel, number, bytes([number]) * 1000)
+        file.flush()
+    file.close()
+    return path.read_bytes()
+
+
+def test_a_log_has_the_same_bytes_where_no_thread_can_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = _write_chunks(tmp_path / "usual.mcap")
+
+    def refuse(*_: object) -> None:
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", refuse)
+    assert _write_chunks(tmp_path / "alone.mcap") == usual
+
+
+def test_an_error_of_the_thread_that_writes_ends_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fill_disk(self: McapFile, *_: object) -> None:
+        self._file.close()
+        raise OSError(28, "No space left on device", str(self.part))
+
+    monkeypatch.setattr(McapFile, "_compress_and_write", fill_disk)
+    with pytest.raises(OSError, match="No space left"):
+        _write_chunks(tmp_path / "x.mcap")
+    assert not (tmp_path / "x.mcap").exists()
 
 
 def test_no_log_is_explained(tmp_path: Path) -> None:

@@ -1,13 +1,15 @@
 """Writes an MCAP file whose rows of equal layout cost next to nothing, and that survives a kill.
 
-Chunks of at most a few MiB are handed to the operating system at once, into ``path``.part, which gets its name when
-complete. A block of messages of one channel and of one size is one array, message headers included;
-what is written once goes through the records of the ``mcap`` package. Format: mcap.dev/spec.
+Chunks of at most a few MiB go to the operating system, into ``path``.part, which gets its name when complete.
+A thread compresses and writes each chunk while the next one fills. A block of messages of one channel and of one size
+is one array, message headers included; what is written once goes through the records of the ``mcap`` package.
+Format: mcap.dev/spec.
 """
 
 import os
 import struct
 import zlib
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +68,9 @@ class McapFile:
         self._chunks: list[ChunkIndex] = []
         self._metadata: list[MetadataIndex] = []
         self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
+        self._writer = ThreadPoolExecutor(max_workers=1)
+        self._written: Future[None] | None = None
+        """Of the chunk that the thread of ``_writer`` writes."""
         self._compressor = zstandard.ZstdCompressor(level=-1, write_checksum=True)
         self._begin_chunk()
         self._write(MCAP0_MAGIC + _bytes(Header(profile="", library=LIBRARY)))
@@ -97,6 +102,7 @@ class McapFile:
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Write a metadata record, outside the chunks, at once."""
         record = _bytes(Metadata(name=name, metadata=values))
+        self._await_chunk()
         self._metadata.append(MetadataIndex(offset=self._size, length=len(record), name=name))
         self._write(record)
 
@@ -126,7 +132,7 @@ class McapFile:
         self._add(rows.data.cast("B"))
 
     def flush(self) -> None:
-        """Write the chunk in hand, if it holds a message."""
+        """Hand the chunk in hand to the thread that writes, if it holds a message."""
         if self._entries:
             self._write_chunk()
 
@@ -136,6 +142,8 @@ class McapFile:
             return
         self.open = False
         self.flush()
+        self._await_chunk()
+        self._writer.shutdown()
         self._write(_bytes(DataEnd(data_section_crc=self._crc)))
         self._write_summary()
         self._file.close()
@@ -145,6 +153,7 @@ class McapFile:
     def discard(self) -> None:
         """Remove what is written so far."""
         self.open = False
+        self._writer.shutdown()
         self._file.close()
         self.part.unlink(missing_ok=True)
 
@@ -181,16 +190,33 @@ class McapFile:
         """Channel -> times and offsets in the chunk of its messages."""
 
     def _write_chunk(self) -> None:
-        first, last, size = self._chunk_first_ns, self._chunk_last_ns, self._chunk_size
-        packed = self._compressor.compress(b"".join(self._parts))
-        body = CHUNK.pack(first, last, size, 0, len(COMPRESSION)) + COMPRESSION + len(packed).to_bytes(8, "little")
+        chunk = b"".join(self._parts), self._entries, self._chunk_first_ns, self._chunk_last_ns
+        self._begin_chunk()
+        self._await_chunk()
+        try:
+            self._written = self._writer.submit(self._compress_and_write, *chunk)
+        except RuntimeError:  # no more threads here; the executor keeps what it could not start
+            self._writer = ThreadPoolExecutor(max_workers=1)
+            self._compress_and_write(*chunk)
+
+    def _await_chunk(self) -> None:
+        """Wait until the chunk before is written. Raises the error that prevented it."""
+        if self._written is not None:
+            wait([self._written])
+            written, self._written = self._written, None
+            written.result()
+
+    def _compress_and_write(self, data: bytes, entries: dict[int, list[bytes]], first: int, last: int) -> None:
+        """Write a chunk: its messages, their times and offsets by channel, the first and the last time [ns]."""
+        packed = self._compressor.compress(data)
+        body = CHUNK.pack(first, last, len(data), 0, len(COMPRESSION)) + COMPRESSION + len(packed).to_bytes(8, "little")
         length = HEAD.size + len(body) + len(packed)
         index = ChunkIndex(
             chunk_start_offset=self._size,
             chunk_length=length,
             compression=COMPRESSION.decode(),
             compressed_size=len(packed),
-            uncompressed_size=size,
+            uncompressed_size=len(data),
             message_start_time=first,
             message_end_time=last,
             message_index_length=0,
@@ -198,16 +224,15 @@ class McapFile:
         )
         parts = [HEAD.pack(Opcode.CHUNK, length - HEAD.size), body, packed]
         at = self._size + length
-        for channel, items in self._entries.items():
+        for channel, items in entries.items():
             index.message_index_offsets[channel] = at
-            entries = b"".join(items)
-            parts += [INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + len(entries), channel, len(entries)), entries]
-            at += INDEX_HEADER.size + len(entries)
+            times = b"".join(items)
+            parts += [INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + len(times), channel, len(times)), times]
+            at += INDEX_HEADER.size + len(times)
         index.message_index_length = at - self._size - length
         self._chunks.append(index)
         self._first_ns, self._last_ns = min(self._first_ns, first), max(self._last_ns, last)
         self._write(b"".join(parts))
-        self._begin_chunk()
 
     def _write_summary(self) -> None:
         counted = {channel: count for channel, count in self._counts.items() if count}

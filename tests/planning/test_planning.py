@@ -48,11 +48,15 @@ def test_distance_to_an_edge_is_that_of_shapely() -> None:
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 
+def word_problem() -> SearchProblem:
+    """Return a problem of which words need the outline and the costs alone."""
+    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
+    return SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
+
+
 def test_every_word_ends_where_it_should() -> None:
     draw = random.Random(2)
-    store = new_store(PlanningWork)
-    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
-    problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
+    store, problem = new_store(PlanningWork), word_problem()
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
         count = list_words(store, ORIGIN, end, WordRequest(0.0, 0.0, UNREACHABLE_COST), problem)
@@ -70,9 +74,7 @@ def test_every_word_ends_where_it_should() -> None:
 
 def test_words_that_cost_too_much_are_left_out_and_no_others() -> None:
     draw = random.Random(3)
-    store = new_store(PlanningWork)
-    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
-    problem = SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
+    store, problem = new_store(PlanningWork), word_problem()
     for _ in range(200):
         reach = draw.choice((1.0, 4.0, 12.0))
         end = Pose(

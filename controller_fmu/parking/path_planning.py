@@ -6,7 +6,7 @@ from typing import NamedTuple
 from controller_fmu.common.external_slot import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Strategy
-from controller_fmu.parking.following.params import LOCK_FRACTION, RATE_FRACTION, START_ACCELERATION, FollowingContext
+from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import begin_path
 from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
@@ -44,7 +44,7 @@ from controller_fmu.parking.planning.planner import (
     search_status,
     search_until,
 )
-from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
+from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.pull_out import free_box, pose_on_road, road_side, with_neighbours
 from controller_fmu.parking.signals import ParkingSystemInput
@@ -54,7 +54,6 @@ from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, kerb_shift, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.slot_filter import slot_of_filter
 from controller_fmu.parking.state import ParkingMemory, SearchProgress
-from modelkit.car import largest_curvature
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -373,29 +372,14 @@ def _with_plan(
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
-    dynamics = driving_dynamics(memory.strategy, params)
     has_map = memory.strategy == Strategy.POSE
-    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, dynamics, has_map)
+    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, has_map)
     memory = memory._replace(
         plan=memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
     )
     if memory.plan.plans > max(params.plan.max_plans, memory.progress.manoeuvres):
         return without_path(memory, Reason.LEFT_PATH, inputs, params)
     return memory
-
-
-def driving_dynamics(strategy: int, params: ParkingParams) -> DrivingDynamics:
-    """Return how the vehicle drives a path; its rate is 0 where the wheel may not turn on the move.
-
-    Nor does a path into or out of a slot have transitions: what is measured on the way moves its goal and obstacles.
-    """
-    steering = params.car.steering
-    law = params.drive
-    rate = 0.0
-    if law.rolling_offset > 0.0 and strategy == Strategy.POSE:
-        rate = RATE_FRACTION * steering.rate_limit / steering.ratio
-    curvature = LOCK_FRACTION * largest_curvature(params.car)
-    return DrivingDynamics(params.car.wheelbase, rate, curvature, law.speed, START_ACCELERATION, law.deceleration)
 
 
 def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: VehicleOutline) -> tuple[Landmark, ...]:

@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 from controller_fmu.parking.geometry.outline import VehicleOutline, pose_along_arc
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.planning.planner import PlanningStatus, begin, search_until
-from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
+from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -53,12 +53,9 @@ def scene_of(polygons: Any) -> Any:
 MAX_CUSPS = 25
 
 
-NO_DYNAMICS = DrivingDynamics()
-
-
-def request_of(start: Pose, goal: Pose, margin: float, dynamics: DrivingDynamics = NO_DYNAMICS) -> PlanningRequest:
+def request_of(start: Pose, goal: Pose, margin: float) -> PlanningRequest:
     """Return a request of the competition's car in a known map."""
-    return PlanningRequest(start, goal, CAR, margin, MAX_CUSPS, dynamics, True)
+    return PlanningRequest(start, goal, CAR, margin, MAX_CUSPS, True)
 
 
 def search(store: Any, scene: Any, request: PlanningRequest, count: int) -> None:

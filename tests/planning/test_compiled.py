@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from controller_fmu.parking.planning.planner import PlanningStatus
-from controller_fmu.parking.planning.problem import DrivingDynamics, PlanningRequest
+from controller_fmu.parking.planning.problem import PlanningRequest
 from fmus.compiler import translate
 from modelkit.vocabulary import Pose
 from tests.compiler.c_model import CModel
@@ -44,8 +44,7 @@ def twins(translation: Any, folder: Any, scene: Any, request: PlanningRequest, e
 
 
 def test_between_two_boxes(translation: Any, folder: Any) -> None:
-    dynamics = DrivingDynamics(2.8, 0.45, 0.95 * CAR.max_curvature, 0.8, 1.0, 0.5)
-    request = request_of(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), 0.1, dynamics)
+    request = request_of(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), 0.1)
     assert twins(translation, folder, scene_of(BOXES), request, 9).status == PlanningStatus.PLANNED
 
 

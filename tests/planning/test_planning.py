@@ -10,14 +10,14 @@ from controller_fmu.parking.following.params import FollowingParams
 from controller_fmu.parking.following.rolling_steering import MARGIN_FRACTION, ROOMY_FACTOR
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
-from controller_fmu.parking.planning.analytic_expansion import cheapest_word, word_length
+from controller_fmu.parking.planning.analytic_expansion import cheapest_word
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words, turn_of
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
-from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork
+from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork, word_length
 from modelkit.store import new_store, size_of
 from modelkit.vocabulary import Pose
 from tests.planning.scenes import (

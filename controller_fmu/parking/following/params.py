@@ -9,8 +9,6 @@ from modelkit.signal import Role, Signal
 HOUSE = "project default; the source states none"
 RATE_FRACTION = 0.9
 """Of the steering wheel's rate that a transition asks for; the rest is for tracking."""
-LOCK_FRACTION = 0.95
-"""Of the largest curvature that a path with all its transitions takes."""
 START_ACCELERATION = 1.0
 """Acceleration [m/s2] with which a vehicle sets out, the lag of its drive counted."""
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.following.params import RATE_FRACTION, START_ACCELERATION, FollowingContext
 from controller_fmu.parking.planning.gear_segments import GearSegment, distance_before, gear_segment
-from controller_fmu.parking.planning.planner import PathSegment, PlannedPath
+from controller_fmu.parking.planning.planner import PlannedPath
 from controller_fmu.parking.planning.problem import SAME_CURVATURE
 from modelkit.maths import sign
 
@@ -117,15 +117,10 @@ def _transition_at(
     """Return the joint at the end of ``segment``, ``at`` [m] from the start of the gear segment."""
     if segment >= whole.last:
         return CurvatureJoint()
-    if is_transition(path, segment + 1):
-        length = min(abs(path.segments[segment].distance), abs(path.segments[segment + 1].distance))
-        return CurvatureJoint(length, path.segments[segment + 1].curvature - path.segments[segment].curvature)
     offset = ROOMY_FACTOR * _max_offset(path, context)
     if offset <= 0.0:
         return CurvatureJoint()
-    longest = 2.0 * min(
-        _distance_to_transition(path, whole, segment, -1), _distance_to_transition(path, whole, segment + 1, 1)
-    )
+    longest = 2.0 * min(at, whole.length - at)
     k0 = path.segments[segment].curvature
     k1 = path.segments[segment + 1].curvature
     if abs(k1 - k0) < SAME_CURVATURE:
@@ -138,24 +133,6 @@ def _transition_at(
         if steering_speed_limit(swing / transition, context) >= MIN_ROLLING_SPEED
         else CurvatureJoint()
     )
-
-
-def _distance_to_transition(path: PlannedPath, whole: GearSegment, segment: int, turn: int) -> float:
-    """Return the distance [m] from a segment on (``turn`` 1), or back (-1), to a transition or the gear's end."""
-    distance = 0.0
-    number = segment
-    while whole.first <= number <= whole.last:
-        if path.segments[number].speed > 0.0:
-            return distance
-        distance += abs(path.segments[number].distance)
-        number += turn
-    return distance
-
-
-def is_transition(path: PlannedPath, segment: int) -> bool:
-    """Return whether the path has a transition about the start of ``segment``; ``path.used``: at its end."""
-    before = path.segments[segment - 1].speed if segment > 0 else 0.0
-    return before > 0.0 or (segment < path.used and path.segments[segment].speed > 0.0)
 
 
 def steering_speed_limit(turning: float, context: FollowingContext) -> float:
@@ -199,7 +176,6 @@ def steering_rate_at(path: PlannedPath, whole: GearSegment, place: float, contex
         share = 1.0 if on >= joint.transition else 0.0
         if 0.0 < on < joint.transition:
             share = on / joint.transition
-        if 0.0 < on < joint.transition and not is_transition(path, number + 1):
             slope += joint.jump / joint.transition
         curvature += share * (path.segments[number + 1].curvature - path.segments[number].curvature)
     bent = context.car.wheelbase * curvature
@@ -212,16 +188,11 @@ def upcoming_stop(path: PlannedPath, segment: int, left: float, context: Followi
     here = distance_before(path, whole, segment + 1) - left
     speed = steering_speed_limit(steering_rate_at(path, whole, here, context), context)
     at = 0.0
-    for number in range(whole.first, whole.last + 1):
-        limit = path.segments[number].speed
-        if number >= segment and limit > 0.0:
-            speed = min(speed, math.sqrt(limit * limit + 2.0 * context.drive.deceleration * max(at - here, 0.0)))
+    for number in range(whole.first, whole.last):
         at += abs(path.segments[number].distance)
         transition = _transition_at(path, whole, number, at, context).transition
-        if segment <= number < whole.last and transition <= 0.0:
+        if segment <= number and transition <= 0.0:
             return UpcomingStop(at - here, speed, standstill_before(path, number + 1, context))
-        if number == whole.last or is_transition(path, number + 1):
-            transition = 0.0
         for share in (-0.5, 0.0, 0.5):
             place = at + share * transition
             if transition > 0.0 and place > here:
@@ -242,8 +213,6 @@ def standstill_before(path: PlannedPath, segment: int, context: FollowingContext
     offset = _overrun_before(path, segment, context)
     ends = segment >= path.used
     settled = SETTLING_TIME if ends else 0.0
-    if is_transition(path, segment):
-        return _standstill_in_transition(path, segment, before, next_curvature, context)
     if offset <= 0.0 or path.margin < MIN_MARGIN:
         return StandstillSteering(next_curvature=next_curvature)
     if abs(next_curvature - before) < SAME_CURVATURE:
@@ -263,21 +232,6 @@ def standstill_before(path: PlannedPath, segment: int, context: FollowingContext
         0.0 if same_gear or segment == 0 else early.overrun + late.overrun,
         next_curvature,
     )
-
-
-def _standstill_in_transition(
-    path: PlannedPath, segment: int, before: float, next_curvature: float, context: FollowingContext
-) -> StandstillSteering:
-    """Return the standstill within a transition: the wheel turns for half of an arc's time before and behind it."""
-    base = context.car.wheelbase
-    rate = context.car.steering.rate_limit / context.car.steering.ratio
-    most = abs(math.atan(base * next_curvature) - math.atan(base * before)) / rate
-    early = path.segments[segment - 1] if segment > 0 else PathSegment()
-    late = path.segments[segment] if segment < path.used else PathSegment()
-    slowing = 0.5 * math.sqrt(2.0 * abs(early.distance) / context.drive.deceleration) if early.speed > 0.0 else 0.0
-    starting = 0.5 * math.sqrt(2.0 * abs(late.distance) / START_ACCELERATION) if late.speed > 0.0 else 0.0
-    settled = 0.0 if segment < path.used else SETTLING_TIME
-    return StandstillSteering(max(min(slowing, most), settled), min(starting, most), next_curvature=next_curvature)
 
 
 class SteeringWhileMoving(NamedTuple):

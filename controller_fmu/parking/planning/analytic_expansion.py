@@ -3,13 +3,15 @@
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
-from controller_fmu.parking.planning.reeds_shepp import turn_of
+from controller_fmu.parking.planning.reeds_shepp import turn_of, word_curvature
 from controller_fmu.parking.planning.search_tree import set_best
 from controller_fmu.parking.planning.work import (
     NO_INDEX,
+    WORD_SEGMENTS,
     PlanningWork,
     PlanValue,
     discard_word,
+    word_length,
 )
 from modelkit.vocabulary import Pose
 
@@ -45,23 +47,12 @@ def cheapest_word(work: PlanningWork, words: int) -> int:
     return best
 
 
-def word_length(work: PlanningWork, word: int, segment: int) -> float:
-    """Return the length [m] of a word's segment (0 to 4), reverse negative."""
-    if segment == 0:
-        return work.word_a[word]
-    if segment == 1:
-        return work.word_b[word]
-    if segment == 2:
-        return work.word_c[word]
-    return work.word_d[word] if segment == 3 else work.word_e[word]
-
-
 def _ends_free(work: PlanningWork, word: int) -> bool:
     """Return whether the first and the last segment of a word fit what is free at the node and at the target."""
     first = True
     last = 0.0
     last_turn = 0
-    for segment in range(5):
+    for segment in range(WORD_SEGMENTS):
         distance = word_length(work, word, segment)
         turn = turn_of(work.word_code[word], segment)
         if distance != 0.0:
@@ -78,9 +69,9 @@ def _ends_free(work: PlanningWork, word: int) -> bool:
 def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:
     """Return whether the car can drive a word from ``pose``."""
     gap = clearance(work, pose, problem) - problem.margin
-    for segment in range(5):
+    for segment in range(WORD_SEGMENTS):
         distance = word_length(work, word, segment)
-        k = (turn_of(work.word_code[word], segment) - 1) * problem.car.max_curvature
+        k = word_curvature(work, word, segment, problem)
         if distance != 0.0:
             driven = sweep_arc(work, pose, gap, distance, k, problem)
             if driven.distance < abs(distance):

@@ -40,8 +40,8 @@ def distance_before(path: PlannedPath, whole: GearSegment, segment: int) -> floa
 
 
 def without_short_end(path: PlannedPath) -> PlannedPath:
-    """Return the path without last segments shorter than ``MIN_LENGTH``, transitions excepted."""
+    """Return the path without last segments shorter than ``MIN_LENGTH``."""
     used = path.used
-    while used > 1 and abs(path.segments[used - 1].distance) < MIN_LENGTH and path.segments[used - 1].speed == 0.0:
+    while used > 1 and abs(path.segments[used - 1].distance) < MIN_LENGTH:
         used -= 1
     return path._replace(used=used)

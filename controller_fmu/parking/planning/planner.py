@@ -29,7 +29,6 @@ from controller_fmu.parking.planning.search_schedule import (
     search_region,
 )
 from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, path_cost, smooth
-from controller_fmu.parking.planning.steering_transitions import begin_transitions, try_transitions
 from controller_fmu.parking.planning.work import (
     MAX_CUSPS,
     REQUEST_SIZE,
@@ -51,8 +50,7 @@ class PlanningPhase(IntEnum):
     BEGIN = 1
     SEARCH = 2
     SMOOTH = 3
-    ADD_TRANSITIONS = 4
-    FINISHED = 5
+    FINISHED = 4
 
 
 class PlanningStatus(IntEnum):
@@ -68,7 +66,7 @@ class PlanningStatus(IntEnum):
     """Free at start and goal, but with less than the least margin."""
 
 
-MAX_SEGMENTS = 96
+MAX_SEGMENTS = 64
 
 
 class PathSegment(NamedTuple):
@@ -78,8 +76,6 @@ class PathSegment(NamedTuple):
     """[m], reverse negative."""
     curvature: float = 0.0
     """Curvature [1/m]."""
-    speed: float = 0.0
-    """Largest speed [m/s] on a transition, where the wheel turns; 0: it is not one."""
     overrun: float = 0.0
     """How far [m] the segment before may go on where the gear changes."""
 
@@ -165,7 +161,7 @@ def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Verte
 
 
 def step(work: PlanningWork, request: PlanningRequest) -> None:
-    """Do one bounded step: set up a scene, begin a search, expand a node, smooth a span, or try a transition."""
+    """Do one bounded step: set up a scene, begin a search, expand a node, or smooth a span."""
     work.counts[PlanCount.COUNT] = work.counts[PlanCount.COUNT] + 1
     phase = work.counts[PlanCount.PHASE]
     problem = search_problem(work, request)
@@ -185,10 +181,6 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
         if not more:
             _keep_if_better(work, problem)
             _next_stage(work, request)
-    elif phase == PlanningPhase.ADD_TRANSITIONS:
-        more = try_transitions(work, request, problem, MAX_SEGMENTS)
-        if not more:
-            _finish(work, PlanningStatus.PLANNED)
 
 
 def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
@@ -205,7 +197,7 @@ def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
             overrun = 0.0
             if before.distance * distance < 0.0:
                 overrun = free_distance(work, pose, sign(before.distance), before.curvature, MAX_CLEARANCE, problem)
-            before = PathSegment(distance, work.best_curvature[number], work.best_speed[number], overrun)
+            before = PathSegment(distance, work.best_curvature[number], overrun)
             segments = segments[:number] + (before,) + segments[number + 1 :]
             pose = pose_along_arc(pose, distance, before.curvature)
     return PlannedPath(count, margin, work.values[PlanValue.BEST_PATH_COST], segments)
@@ -215,7 +207,6 @@ def _numbers(request: PlanningRequest) -> tuple[float, ...]:
     start = request.start
     goal = request.goal
     car = request.car
-    dynamics = request.dynamics
     return (
         start.x,
         start.y,
@@ -228,12 +219,6 @@ def _numbers(request: PlanningRequest) -> tuple[float, ...]:
         car.half_width,
         car.max_curvature,
         request.margin,
-        dynamics.wheelbase,
-        dynamics.rate,
-        dynamics.curvature,
-        dynamics.speed,
-        dynamics.acceleration,
-        dynamics.deceleration,
         float(request.max_cusps),
     )
 
@@ -321,10 +306,7 @@ def _next_stage(work: PlanningWork, request: PlanningRequest) -> None:
     best = work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0
     last = stage >= len(SEARCH_SCHEDULE)
     if best and (last or not SEARCH_SCHEDULE[stage].always):
-        work.counts[PlanCount.PHASE] = PlanningPhase.ADD_TRANSITIONS
-        has_transitions = begin_transitions(work, request, MAX_SEGMENTS)
-        if not has_transitions:
-            _finish(work, PlanningStatus.PLANNED)
+        _finish(work, PlanningStatus.PLANNED)
     elif last:
         _finish(work, PlanningStatus.NO_PATH)
     else:

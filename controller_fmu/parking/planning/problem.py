@@ -13,19 +13,6 @@ SAME_CURVATURE = 1e-6
 """Curvatures nearer than this [1/m] are one."""
 
 
-class DrivingDynamics(NamedTuple):
-    """How the vehicle drives a path; with a rate of 0 the wheel turns at standstill only."""
-
-    wheelbase: float = 0.0
-    rate: float = 0.0
-    """Of the front wheels [rad/s]."""
-    curvature: float = 0.0
-    """Largest curvature [1/m] that leaves some of the lock for tracking."""
-    speed: float = 0.0
-    acceleration: float = 0.0
-    deceleration: float = 0.0
-
-
 class PlanningRequest(NamedTuple):
     """Request for a path from one pose to another."""
 
@@ -36,7 +23,6 @@ class PlanningRequest(NamedTuple):
     """Desired clearance [m]; where it cannot be kept, less is tried."""
     max_cusps: int = 0
     """Changes of direction of a path that is taken."""
-    dynamics: DrivingDynamics = DrivingDynamics()
     has_map: bool = False
     """The polygons of the given map are obstacles, too."""
 

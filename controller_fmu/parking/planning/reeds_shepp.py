@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
-from controller_fmu.parking.planning.work import PlanningWork, PlanValue, set_word
+from controller_fmu.parking.planning.work import WORD_SEGMENTS, PlanningWork, PlanValue
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -33,6 +33,11 @@ def word_code(a: int, b: int, c: int, d: int, e: int) -> int:
 def turn_of(code: int, segment: int) -> int:
     """Return the turn of a segment (0 to 4) of a word."""
     return (code >> 2 * segment) & 3
+
+
+def word_curvature(work: PlanningWork, word: int, segment: int, problem: SearchProblem) -> float:
+    """Return the curvature [1/m] of a segment (0 to 4) of a listed word."""
+    return (turn_of(work.word_code[word], segment) - 1) * problem.car.max_curvature
 
 
 class WordRequest(NamedTuple):
@@ -274,8 +279,9 @@ def _add(
     gear = choice.request.gear
     lock = choice.request.lock
     cost = 0.0
-    for number in range(5):
-        distance = _without_tiny(lengths[number])
+    for number in range(WORD_SEGMENTS):
+        distance = lengths[number] if abs(lengths[number]) > MIN_WORD_LENGTH else 0.0
+        work.word_distance[WORD_SEGMENTS * count + number] = distance * choice.radius
         if distance != 0.0:
             turn = float(turn_of(code, number) - 1)
             direction = sign(distance)
@@ -288,16 +294,6 @@ def _add(
         return count
     if choice.only_cheaper:
         work.values[PlanValue.WORD_LIMIT] = cost
-    r = choice.radius
-    set_word(
-        work,
-        count,
-        code,
-        cost,
-        (_without_tiny(a) * r, _without_tiny(b) * r, _without_tiny(c) * r, _without_tiny(d) * r, _without_tiny(e) * r),
-    )
+    work.word_code[count] = code
+    work.word_cost[count] = cost
     return count + 1
-
-
-def _without_tiny(distance: float) -> float:
-    return distance if abs(distance) > MIN_WORD_LENGTH else 0.0

@@ -7,9 +7,11 @@ from controller_fmu.parking.planning.work import (
     HASH_SIZE,
     NO_INDEX,
     TREE_COUNTS,
+    WORD_SEGMENTS,
     PlanCount,
     PlanningWork,
     PlanValue,
+    word_length,
 )
 
 
@@ -78,8 +80,5 @@ def set_best(work: PlanningWork, node: int, word: int, cost: float) -> None:
     work.counts[PlanCount.BEST_NODE] = node
     work.counts[PlanCount.BEST_CODE] = work.word_code[word]
     work.values[PlanValue.BEST_COST] = cost
-    work.values[PlanValue.BEST_LENGTHS] = work.word_a[word]
-    work.values[PlanValue.BEST_LENGTHS + 1] = work.word_b[word]
-    work.values[PlanValue.BEST_LENGTHS + 2] = work.word_c[word]
-    work.values[PlanValue.BEST_LENGTHS + 3] = work.word_d[word]
-    work.values[PlanValue.BEST_LENGTHS + 4] = work.word_e[word]
+    for segment in range(WORD_SEGMENTS):
+        work.values[PlanValue.BEST_LENGTHS + segment] = word_length(work, word, segment)

@@ -1,11 +1,12 @@
 """Shortcut smoothing: spans of the path found are replaced by cheaper words that are free of collision."""
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
-from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free, word_length
+from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
-from controller_fmu.parking.planning.reeds_shepp import WordRequest, list_words, turn_of
+from controller_fmu.parking.planning.reeds_shepp import WordRequest, list_words, turn_of, word_curvature
 from controller_fmu.parking.planning.work import (
     NO_INDEX,
+    WORD_SEGMENTS,
     WORK_SEGMENTS,
     PlanCount,
     PlanningWork,
@@ -13,6 +14,7 @@ from controller_fmu.parking.planning.work import (
     discard_word,
     move_segments,
     set_segment,
+    word_length,
 )
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
@@ -39,7 +41,7 @@ def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
         for _ in range(depth - 1 - level):
             node = work.node_parent[node]
         pose = append_segment(work, pose, work.node_length[node], work.node_curvature[node])
-    for number in range(5):
+    for number in range(WORD_SEGMENTS):
         k = (turn_of(work.counts[PlanCount.BEST_CODE], number) - 1) * problem.car.max_curvature
         pose = append_segment(work, pose, work.values[PlanValue.BEST_LENGTHS + number], k)
     work.counts[PlanCount.SPAN] = work.counts[PlanCount.SEGMENT_COUNT]
@@ -161,10 +163,10 @@ def _cost_after(work: PlanningWork, word: int, segment: int, problem: SearchProb
     """Return the cost [m] of going on from a word to a segment of the path."""
     distance = 0.0
     k = 0.0
-    for number in range(5):
+    for number in range(WORD_SEGMENTS):
         if word_length(work, word, number) != 0.0:
             distance = word_length(work, word, number)
-            k = (turn_of(work.word_code[word], number) - 1) * problem.car.max_curvature
+            k = word_curvature(work, word, number, problem)
     return joint_cost(distance, k, work.segment_length[segment], work.segment_curvature[segment], problem)
 
 
@@ -172,7 +174,7 @@ def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: Sea
     """Put a word in place of some segments; returns whether there was room."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
     used = 0
-    for number in range(5):
+    for number in range(WORD_SEGMENTS):
         if word_length(work, word, number) != 0.0:
             used += 1
     if count + used - span > WORK_SEGMENTS:
@@ -180,9 +182,9 @@ def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: Sea
     pose = pose_at(work, place)
     move_segments(work, place + span, count - place - span, used - span)
     segment = place
-    for number in range(5):
+    for number in range(WORD_SEGMENTS):
         distance = word_length(work, word, number)
-        k = (turn_of(work.word_code[word], number) - 1) * problem.car.max_curvature
+        k = word_curvature(work, word, number, problem)
         if distance != 0.0:
             set_segment(work, segment, pose, distance, k)
             pose = pose_along_arc(pose, distance, k)

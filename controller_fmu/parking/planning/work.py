@@ -19,8 +19,9 @@ HASH_SIZE = 32768
 BUCKET_COUNT = 2048
 CROWDING_CELLS = 8192
 MAX_WORDS = 128
+WORD_SEGMENTS = 5
 WORK_SEGMENTS = 256
-REQUEST_SIZE = 18
+REQUEST_SIZE = 12
 MAX_CUSPS = REQUEST_SIZE - 1
 """Place of that number among those of the request."""
 NO_INDEX = -1
@@ -61,28 +62,14 @@ class PlanningWork(NamedTuple):
     crowding: Annotated[Ints, Column("h", CROWDING_CELLS, "1", "how often nodes of a region have been taken up")]
     word_cost: Annotated[Floats, Column("d", MAX_WORDS, "m", "cost of a word")]
     word_code: Annotated[Ints, Column("i", MAX_WORDS, "1", "its turns, two bits each")]
-    word_a: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its first segment")]
-    word_b: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its second segment")]
-    word_c: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its third segment")]
-    word_d: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its fourth segment")]
-    word_e: Annotated[Floats, Column("d", MAX_WORDS, "m", "distance of its fifth segment")]
+    word_distance: Annotated[Floats, Column("d", WORD_SEGMENTS * MAX_WORDS, "m", "distances of its segments")]
     segment_length: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "distance of a segment of the path")]
     segment_curvature: Annotated[Floats, Column("d", WORK_SEGMENTS, "1/m", "its curvature")]
-    segment_speed: Annotated[
-        Floats, Column("d", WORK_SEGMENTS, "m/s", "its largest speed on a transition: see PathSegment")
-    ]
     segment_x: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "x where it begins")]
     segment_y: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "y where it begins")]
     segment_heading: Annotated[Floats, Column("d", WORK_SEGMENTS, "rad", "heading where it begins")]
     best_length: Annotated[Floats, Column("d", WORK_SEGMENTS, "m", "distance of a segment of the best path yet")]
     best_curvature: Annotated[Floats, Column("d", WORK_SEGMENTS, "1/m", "its curvature")]
-    best_speed: Annotated[Floats, Column("d", WORK_SEGMENTS, "m/s", "its largest speed: see PathSegment")]
-    transition_fraction: Annotated[
-        Floats, Column("d", WORK_SEGMENTS, "1", "fraction requested of the transition before it")
-    ]
-    arc_curvature: Annotated[
-        Floats, Column("d", WORK_SEGMENTS, "1/m", "curvature of a segment between its transitions")
-    ]
     corner_x: Annotated[Floats, Column("d", MAX_VERTICES, "m", "x of a corner of the requested scene")]
     corner_y: Annotated[Floats, Column("d", MAX_VERTICES, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", MAX_VERTICES, "1", "its polygon")]
@@ -123,10 +110,6 @@ class PlanCount(IntEnum):
     GOAL_TIGHTER = 18
     VERTEX_COUNT = 20
     """Vertices of the obstacle map in use."""
-    TRANSITION_TRIED = 21
-    """Number of the transition that is tried."""
-    ARC_COUNT = 22
-    """Arcs of a transition on one side of a stop."""
 
 
 class PlanValue(IntEnum):
@@ -162,17 +145,9 @@ def clear_cost_to_go(work: PlanningWork, cells: int) -> None:
         work.cost_to_go_next[cell] = -2
 
 
-def set_word(
-    work: PlanningWork, word: int, code: int, cost: float, lengths: tuple[float, float, float, float, float]
-) -> None:
-    """Set a word: its code, cost [m], and the lengths [m] of its segments, reverse negative."""
-    work.word_code[word] = code
-    work.word_cost[word] = cost
-    work.word_a[word] = lengths[0]
-    work.word_b[word] = lengths[1]
-    work.word_c[word] = lengths[2]
-    work.word_d[word] = lengths[3]
-    work.word_e[word] = lengths[4]
+def word_length(work: PlanningWork, word: int, segment: int) -> float:
+    """Return the length [m] of a word's segment (0 to 4), reverse negative; 0: there is none."""
+    return work.word_distance[WORD_SEGMENTS * word + segment]
 
 
 def discard_word(work: PlanningWork, word: int) -> None:
@@ -208,7 +183,6 @@ def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int
 
 
 def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:
-    """Set a segment of the best path: ``distance`` [m], ``k`` [1/m]; it is no transition."""
+    """Set a segment of the best path: ``distance`` [m], reverse negative, ``k`` [1/m]."""
     work.best_length[segment] = distance
     work.best_curvature[segment] = k
-    work.best_speed[segment] = 0.0

@@ -1,6 +1,7 @@
 """The replay page in a real browser: it renders, plays, obeys the keyboard, asks nothing of any network."""
 
 import csv
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.report.replay import replay_page
 from tests.native_runs import native_recording
 
+CIRCLES = Path(__file__).with_name("circles.yaml")
 CLOCK = "window.replay.t"
 
 
@@ -245,6 +247,31 @@ def test_somebody_who_comes_and_goes_is_no_grey_box(show: Any, tmp_path: Path) -
     assert page.evaluate(skin) == 0
     page.evaluate("window.replay.seek(13)")
     assert page.evaluate(skin) > 10
+
+
+def test_a_run_of_which_few_instants_are_kept_has_its_turns_and_no_path_across_them(
+    show: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    changes = "stop_time=200", "vehicle.driver.profile=[{at: 0, speed: 2}]"
+    recording, scenario = native_recording(str(CIRCLES), *changes), load_scenario(str(CIRCLES), list(changes))
+    monkeypatch.setattr("orchestrator.presentation.report.replay.MOST_ROWS", (12,))
+    path = tmp_path / "report.html"
+    path.write_text(replay_page(recording, summarize(recording, scenario, 1.0), []), encoding="utf-8")
+    page, seen = show(path, "#t=190")
+    heading = "window.replay.plots.all.find((p) => p.cells.some((c) => c.name === 'vehicle.pose.heading')).u.data[1]"
+    turned = page.evaluate(f"{heading}.at(-1)")
+    assert turned == pytest.approx(math.degrees(recording.signals["vehicle.pose.heading"][-1]), rel=1e-3)
+    assert turned > 2500.0
+    run = "window.replay.page.runs[0]"
+    assert page.evaluate(f"{run}.apart.filter(Boolean).length") > 5
+    shown = page.evaluate(f"window.replay.scene.poseAt({run}, 190)[2]")
+    assert page.evaluate(f"(at) => {run}.values('vehicle.pose.heading').includes(at)", shown)
+    assert seen.console == []
+
+
+def test_a_short_run_is_one_line(show: Any, replay: Any) -> None:
+    page, _ = show(replay)
+    assert not page.evaluate("window.replay.page.runs[0].apart.some(Boolean)")
 
 
 def test_text_of_a_scenario_never_becomes_markup(show: Any, replay: Any) -> None:

@@ -33,7 +33,7 @@ from orchestrator.presentation.drawing.time_panels import (
     picture_height,
     raise_place,
 )
-from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.fmu_instance import Array, Indices
 
 BLUE, ASKED, GREEN, GREY, INK = LIGHT["run-a"], LIGHT["asked"], LIGHT["good"], "#8a8f98", "#22262c"
 DEGREE = math.radians(1.0)
@@ -170,9 +170,20 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
     draw_scene(axis, seen, [still for each in stills for still in (*each[:-1:MAX_MOVING_OUTLINES], *each[-1:])])
     x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
     _outlines(axis, seen.car, x, y, heading)
-    axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
+    apart = _apart(seen, x, y)
+    pieces = (np.insert(values, apart, math.nan) for values in (x, y))
+    axis.plot(*pieces, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
+    axis.plot(x[apart], y[apart], ".", color=BLUE, markersize=1.8, zorder=5)
     _wheels(axis, seen, seen.car, (x[-1], y[-1], heading[-1]))
     axis.legend(loc="upper left", fontsize=8)
+
+
+def _apart(seen: Overview, x: Array, y: Array) -> Indices:
+    """Return the rows to which the car drove further than straight on, as in circles, of a long run of which few
+    instants are kept."""
+    speed = np.abs(seen.signal("vehicle.speed"))
+    driven = 0.5 * (speed[1:] + speed[:-1]) * np.diff(seen.t)
+    return np.flatnonzero(np.hypot(np.diff(x), np.diff(y)) < 0.95 * driven - 0.2) + 1
 
 
 def draw_scene(axis: Any, seen: Overview, stills: list[Box]) -> None:

@@ -1,12 +1,15 @@
 // What a plot draws: values of signals over time, their range, the tube of a comparison.
 
-// Values of a signal; headings without jumps of whole turns, and beside the first heading of the plot.
+// Values of a signal; headings without jumps of whole turns, and beside the first heading of the plot. One that exceeds a
+// turn counts turns itself: between instants that are far apart it may change by more than one.
 function straightened(run, name, [firstRun, firstName]) {
   const values = run.values(name);
   if (!run.signals[name].turn) return values;
   const turns = (difference) => 2 * Math.PI * Math.round(difference / (2 * Math.PI));
   const result = Float64Array.from(values);
   if (run === firstRun && name === firstName) {
+    const finite = result.filter(Number.isFinite), low = finite.reduce((a, b) => Math.min(a, b), Infinity);
+    if (finite.some((value) => value - low > 2 * Math.PI + 1e-6)) return result;
     for (let i = 1; i < result.length; i++) if (Number.isFinite(result[i] + result[i - 1])) result[i] += turns(result[i - 1] - result[i]);
     return result;
   }

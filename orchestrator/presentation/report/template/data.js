@@ -38,6 +38,8 @@ class Run {
   time = [];
   /** @type {any} outlines where the car was */
   trail = undefined;
+  /** @type {any} */
+  gaps = undefined;
   label = "";
   about = "";
 
@@ -61,6 +63,17 @@ class Run {
       this.cache.set(name, result);
     }
     return this.cache.get(name);
+  }
+
+  // Rows that a straight line from the row before does not reach: the car drove further, there and back or in circles.
+  // So few instants are kept of a long run only.
+  get apart() {
+    if (!this.gaps) {
+      const [x, y, speed] = ["x", "y"].map((axis) => this.values(`vehicle.pose.${axis}`)).concat([this.values("vehicle.speed")]);
+      this.gaps = Array.from(this.time, (time, i) => i > 0 && x && y && speed
+        && Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1]) < 0.475 * Math.abs(speed[i] + speed[i - 1]) * (time - this.time[i - 1]) - 0.2);
+    }
+    return this.gaps;
   }
 
   // Last row at or before t.

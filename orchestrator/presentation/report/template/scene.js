@@ -123,7 +123,8 @@ class Scene {
   }
 
   poseAt(run, t) {
-    const [ox, oy] = run.scene.origin;
+    const [ox, oy] = run.scene.origin, row = run.row(t);
+    if (run.apart[row + 1]) t = run.time[row];
     return [run.at("vehicle.pose.x", t) - ox, run.at("vehicle.pose.y", t) - oy, run.at("vehicle.pose.heading", t)];
   }
 

@@ -142,16 +142,16 @@ function drawPaths(scene, run, number, t) {
   if (!scene.layers.driven) return;
   const x = run.values("vehicle.pose.x"), y = run.values("vehicle.pose.y");
   if (!x || !y) return;
-  const now = run.row(t), points = Array.from(x, (value, i) => [value - ox, y[i] - oy]);
+  const now = run.row(t), path = (first, last) => driven(run, first, last).map(([u, v]) => [u - ox, v - oy]);
   g.lineWidth = 2;
   g.strokeStyle = color("ahead");
-  scene.trace(points.slice(now));
+  scene.trace(path(now, x.length - 1));
   g.stroke();
   g.lineWidth = 3;
   const name = scene.page.ribbons[0];
   if (scene.page.runs.length > 1 || !name) {
     g.strokeStyle = runColor(number);
-    scene.trace([...points.slice(0, now + 1), scene.poseAt(run, t)]);
+    scene.trace([...path(0, now), scene.poseAt(run, t)]);
     g.stroke();
     return;
   }
@@ -159,9 +159,19 @@ function drawPaths(scene, run, number, t) {
     if (span.from > t) break;
     const last = Math.min(run.row(span.to), now);
     g.strokeStyle = stateColor(run.stateName(name, span.value), span.value);
-    scene.trace([...points.slice(run.row(span.from), last + 1), ...(last === now ? [scene.poseAt(run, t)] : [])]);
+    scene.trace([...path(run.row(span.from), last), ...(last === now ? [scene.poseAt(run, t)] : [])]);
     g.stroke();
   }
+}
+
+// Points of the path driven between two rows; a dot instead of a line where the row before is too far away.
+function driven(run, first, last) {
+  const x = run.values("vehicle.pose.x"), y = run.values("vehicle.pose.y"), points = [];
+  for (let row = first; row <= last; row++) {
+    if (run.apart[row]) points.push([NaN, NaN], [x[row], y[row]]);
+    points.push([x[row], y[row]]);
+  }
+  return points;
 }
 
 // Outlines where the car was, at equal distances.

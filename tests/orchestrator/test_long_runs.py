@@ -32,6 +32,9 @@ from orchestrator.simulation.cosim.signal_blocks import SignalBlocks
 GROWTH_MB = 16.0
 """Memory that a log of four times the length may take besides: caches, the allocator's leftovers, the log's index."""
 RARER = ("report", "compare", "csv")
+CIRCLES = Path(__file__).parents[1] / "report" / "circles.yaml"
+MAX_PAGE_BYTES = 50e6
+"""What the scripts of a page may keep."""
 FULL_ROWS, FULL_MB = 2_750_000, 400.0
 """A log of about 411 MB, and what a command may take for it."""
 CHILD = """
@@ -241,10 +244,12 @@ def long_log(path: Path, rows: int) -> None:
 def peak_mb(command: str, log: Path, folder: Path, setup: str = SMALL) -> float:
     """Return the peak memory of a command that reads a log; ``setup`` comes before it."""
     arguments = {
+        "run": ["run", str(log), "--fmus", "native", "--set", "stop_time=36000", "--out", str(folder)],
         "check": ["check", str(log), "gbt41630"],
         "report": ["report", str(log), "--out", str(folder / "page.html")],
         "compare": ["compare", str(log), str(log), "--time", "0.05"],
-        "csv": ["export", "csv", str(log), "--out", str(folder / "run.csv")],
+        **{name: ["export", name, str(log), "--out", str(folder / f"run.{name}")] for name in ("csv", "mf4", "ros2")},
+        "rerun": ["export", "rerun", str(log), "--out", str(folder / "run.rrd")],
     }[command]
     ran = subprocess.run([sys.executable, "-c", setup + CHILD, *arguments], capture_output=True, text=True, check=True)
     code, peak = json.loads(ran.stdout.splitlines()[-1])
@@ -271,8 +276,22 @@ def test_a_log_of_411_mb_takes_less_memory_than_it_has_bytes(tmp_path: Path) -> 
     log = tmp_path / "run.mcap"
     long_log(log, FULL_ROWS)
     assert log.stat().st_size > 400e6
-    for command in ("check", "report", "compare"):
+    for command in ("check", "report", "compare", "mf4", "ros2", "rerun"):
         assert peak_mb(command, log, tmp_path, "") < FULL_MB
+
+
+@pytest.mark.release
+@pytest.mark.skipif(sys.platform == "win32", reason="peak memory comes from getrusage")
+def test_ten_hours_of_circles_are_run_judged_and_shown(show: Any, tmp_path: Path) -> None:
+    assert peak_mb("run", CIRCLES, tmp_path, "") < FULL_MB
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["duration"] == 36_000.0
+    assert summary["final"]["heading"] > 6000.0
+    assert {check["id"]: check["passed"] for check in summary["checks"]}["speed"]
+    page, seen = show(tmp_path / "report.html", "#t=30000")
+    assert page.evaluate("performance.memory.usedJSHeapSize") < MAX_PAGE_BYTES
+    assert page.locator(".plot canvas").count() >= 5
+    assert seen.console == []
 
 
 def test_the_trail_of_a_long_run_has_bounds_and_covers_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:

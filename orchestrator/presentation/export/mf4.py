@@ -2,6 +2,8 @@
 
 import argparse
 import datetime
+import os
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +52,11 @@ def write_mf4(path: Path, recording: Recording, names: list[str]) -> None:
     parts = recording.parts()
     first = next(parts).recording
     wholes = {name for name in names if _is_whole(recording, name)}
-    with MDF(version="4.10") as file:
+    with (
+        MDF(version="4.10") as file,
+        open(os.devnull, "w") as nowhere,
+        redirect_stdout(nowhere),
+    ):  # asammdf prints rates
         file.start_time = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
         comment = str(recording.info.get("scenario", {}).get("name", ""))
         signals = [_signal(Signal, first, name, name in wholes) for name in names]

@@ -31,10 +31,11 @@ EXAMPLES = """examples:
 Shows the top view, the curves and the messages. Needs rerun-sdk: pip install 'apa-cosim[export]'
 """
 POSES_PER_SECOND = 20.0
-"""Poses of the car per second in the top view."""
+MAX_POSES = 20_000.0
+"""Poses of the car in the top view."""
 DRIVEN_RATE = 4.0
-MAX_DRIVEN = 2000.0
-"""Times in a run at which the path driven so far is drawn."""
+MAX_DRIVEN_PATHS, MAX_DRIVEN_POINTS = 2000.0, 1000
+"""Times in a run at which the path driven so far is drawn, and the points of the longest."""
 CURVE_RATE = 100.0
 TIMELINE = "time"
 
@@ -127,16 +128,18 @@ def _moving(rr: Any, stream: Any, recording: Recording) -> None:
         return
     x, y, heading = (np.asarray(values) for values in pose)
     car = CarOutline.of(recording.parameters_of("vehicle")).outline()
-    rows = _rows(recording.t, POSES_PER_SECOND)
+    duration = max(1.0, recording.duration)
+    rows = _rows(recording.t, min(POSES_PER_SECOND, MAX_POSES / duration))
     for row in rows:
         if not np.isfinite(x[row] + y[row] + heading[row]):
             continue
         stream.set_time(TIMELINE, duration=float(recording.t[row]))
         outline = _flat(place(car, float(x[row]), float(y[row]), float(heading[row])))
         stream.log("scene/car", rr.LineStrips2D([outline], colors=[[40, 110, 230]]))
-    for row in _rows(recording.t, min(DRIVEN_RATE, MAX_DRIVEN / max(1.0, recording.duration))):
+    points = rows[:: max(1, len(rows) // MAX_DRIVEN_POINTS)]
+    for row in _rows(recording.t, min(DRIVEN_RATE, MAX_DRIVEN_PATHS / duration)):
         stream.set_time(TIMELINE, duration=float(recording.t[row]))
-        done = rows[rows <= row]
+        done = np.append(points[points < row], row)
         path = _flat(np.column_stack([x[done], y[done]]))
         stream.log("scene/driven", rr.LineStrips2D([path[np.isfinite(path).all(axis=1)]], colors=[[40, 110, 230]]))
 

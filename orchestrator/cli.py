@@ -144,7 +144,7 @@ def _run(words: list[str]) -> int:
 
 def _tolerant_streams() -> None:
     """Let the command finish whatever becomes of its output: an undisplayable character is replaced, a closed stream or
-    a pipe whose reader has ended discards the rest.
+    a pipe whose reader has ended discards the rest, and so does an error stream on a full disk.
     """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -152,8 +152,10 @@ def _tolerant_streams() -> None:
             setattr(sys, name, io.TextIOWrapper(io.FileIO(devnull, "w"), encoding="utf-8"))
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
-            if _is_pipe(stream):
-                raw = io.BufferedWriter(_DiscardingPipe(stream.fileno(), "w", closefd=False))
+            is_file = stream is sys.__stderr__ and not stream.isatty()
+            if is_file or _is_pipe(stream):
+                kind = _DiscardingFile if is_file else _DiscardingPipe
+                raw = io.BufferedWriter(kind(stream.fileno(), "w", closefd=False))
                 encoding = stream.encoding
                 stream.flush()
                 setattr(sys, name, io.TextIOWrapper(raw, encoding, "replace", line_buffering=name == "stderr"))
@@ -172,12 +174,20 @@ def _is_pipe(stream: io.TextIOWrapper) -> bool:
 class _DiscardingPipe(io.FileIO):
     """A pipe that discards what is written after its reader has ended, as ``| head`` does."""
 
+    discards: type[OSError] = BrokenPipeError
+
     def write(self, data: Any) -> int:
         """Return the number of bytes taken, whether they are read or discarded."""
         try:
             return super().write(data)
-        except BrokenPipeError:
+        except self.discards:
             return memoryview(data).nbytes
+
+
+class _DiscardingFile(_DiscardingPipe):
+    """Standard error: progress and warnings that cannot be written do not end a study."""
+
+    discards = OSError
 
 
 def _let_go() -> None:

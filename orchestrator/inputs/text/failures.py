@@ -41,6 +41,14 @@ WORDS = {
     errno.ELOOP: "too many levels of symbolic links (a cycle)",
 }
 
+WITHOUT_NAME = {
+    errno.ENOSPC: "output: {}",
+    errno.EIO: "output: {}",
+    errno.EROFS: "a folder for temporary files or shared memory (/tmp, /dev/shm) {}",
+    errno.EACCES: "a folder for temporary files or shared memory (/tmp, /dev/shm): {}",
+}
+"""What a text of ``WORDS`` is about where the system names no file."""
+
 
 def exit_code_and_message(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     """Return the exit code for an error and the line that is said of it."""
@@ -97,7 +105,7 @@ def place_of(error: OSError) -> str:
         return "the current folder is gone: it was deleted or moved; change to another"
     text = WORDS.get(error.errno or 0, error.strerror or str(error))
     if error.filename is None:
-        return f"output: {text}" if error.errno in (errno.ENOSPC, errno.EIO) else text
+        return WITHOUT_NAME.get(error.errno or 0, "{}").format(text)
     path = Path(os.fsdecode(error.filename))
     if error.errno in (errno.ENOTDIR, errno.EEXIST):
         above = next((item for item in (path, *path.parents) if item.is_file()), None)

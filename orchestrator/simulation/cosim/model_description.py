@@ -60,6 +60,10 @@ def _read_description(path: Path, _stamp: tuple[int, int, int] | None) -> ModelD
             if NOT_SAID not in str(error):
                 raise
             description = read_model_description(_with_fixed_parameters(path), validate=False)
+    except UnicodeEncodeError as error:
+        raise BadInput(
+            "no FMU can be read while the name of the current folder has bytes that are not UTF-8; change to another"
+        ) from error
     except IndexError as error:
         raise BadInput("its ModelStructure has an index, or a reference, of no variable", file=path) from error
     except Exception as error:

@@ -15,6 +15,8 @@ PEDALS = {2: False, 3: True}
 """Number of actions -> whether they are those of pedals."""
 FLOAT32 = "tensor(float)"
 """Name of onnxruntime."""
+FATAL_ONLY = 4
+"""Severity of onnxruntime's messages: its warnings bring names of the file to the terminal, with control characters."""
 ACTION_PERIOD = 0.2
 """Between two actions [s], where nothing else is given."""
 MAX_ACTION_PERIOD = 10.0
@@ -54,7 +56,9 @@ def count_actions(network: Path) -> int:
     count = sum(item.name.startswith(OBSERVATION) for item in variables(POLICY.outputs))
     expected = f"expected one input (cars, {count}) and one output (cars, 2 or 3) in float32"
     try:
-        session = runtime.InferenceSession(str(network), providers=["CPUExecutionProvider"])
+        settings = runtime.SessionOptions()
+        settings.log_severity_level = FATAL_ONLY
+        session = runtime.InferenceSession(str(network), settings, providers=["CPUExecutionProvider"])
         inputs, outputs = session.get_inputs(), session.get_outputs()
         widths = [item.shape[-1] if item.shape else count for item in inputs]
         known = [width for width in widths if isinstance(width, int)]

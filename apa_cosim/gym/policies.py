@@ -6,7 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from apa_cosim.gym.spaces import Floats
-from fmus.policy_fmu import BadPolicy, count_actions
+from fmus.policy_fmu import FATAL_ONLY, BadPolicy, count_actions
 from orchestrator.inputs.text.errors import BadInput
 
 
@@ -49,7 +49,7 @@ class OnnxPolicy:
         import onnxruntime
 
         settings = onnxruntime.SessionOptions()
-        settings.intra_op_num_threads = 1
+        settings.intra_op_num_threads, settings.log_severity_level = 1, FATAL_ONLY
         self._session: Any = onnxruntime.InferenceSession(str(file), settings, providers=["CPUExecutionProvider"])
         (observations,) = self._session.get_inputs()
         self._input, self._one_by_one = observations.name, observations.shape[:1] == [1]

@@ -47,6 +47,7 @@ def load_policy(path: str) -> Callable[[tuple[float, ...]], tuple[float, ...]]:
         raise ImportError("this FMU runs an ONNX policy: install onnxruntime in the Python of the host") from error
     settings = runtime.SessionOptions()
     settings.intra_op_num_threads = settings.inter_op_num_threads = 1
+    settings.log_severity_level = 4  # its warnings have names of the file, with whatever control characters
     session = runtime.InferenceSession(path, settings, providers=["CPUExecutionProvider"])
     name = session.get_inputs()[0].name
 

@@ -160,3 +160,14 @@ def test_a_scene_gives_a_system_of_ours_what_it_has_parameters_for() -> None:
     assert any(name.startswith("map[1]") for name in parking.controller)
     assert not any(name.startswith("action.") for name in parking.controller)
     assert isinstance(parking, Scenario)
+
+
+def test_no_name_of_a_policy_reaches_the_terminal(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """onnxruntime warns of an output of another width, and names it as the file does."""
+    file = network(tmp_path / "odd.onnx")
+    model = onnx.load(str(file))
+    model.graph.node[-1].output[0] = model.graph.output[0].name = "a\x1b[2J"
+    model.graph.output[0].type.tensor_type.shape.dim[1].dim_value = 6
+    onnx.save(model, str(file))
+    assert count_actions(file) == 2
+    assert "\x1b" not in capfd.readouterr().err

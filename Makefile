@@ -50,8 +50,8 @@ $(BIN)/npm install --silent --no-save --no-package-lock --prefix $(VENV)/scripts
 endef
 
 FUZZ_SECONDS ?= 600
-fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills, FMI calls, the planner, FMUs, journals, Parquet, ten minutes each, with new seeds
-	for kind in inputs tables ssp logs kills calls planner fmus journals parquet; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
+fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills, FMI calls, the planner, FMUs, journals, Parquet, drives, scenes, policies, ten minutes each, with new seeds
+	for kind in inputs tables ssp logs kills calls planner fmus journals parquet scenes drives policies; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
 
 mutants: $(VENV)/.test ## Make mistakes in the laws of all papers and say which nobody finds, an hour on one core
 	$(BIN)/python -m tests.mutants --fixed

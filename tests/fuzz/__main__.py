@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.fuzz import fmi_calls, inputs, kills, logs, planner, received, systems, tables
+from tests.fuzz import external_inputs, fmi_calls, inputs, kills, logs, planner, received, systems, tables
 from tests.fuzz.limits import ask, limit_memory
 
 KINDS = {
@@ -22,6 +22,9 @@ KINDS = {
     "fmus": received.fuzz_fmus,
     "journals": received.fuzz_journals,
     "parquet": received.fuzz_parquet,
+    "scenes": external_inputs.fuzz_scenes,
+    "drives": external_inputs.fuzz_drives,
+    "policies": external_inputs.fuzz_policies,
 }
 
 SLOWEST = 600.0
@@ -46,7 +49,7 @@ def main() -> int:
     if asked.kind in ("logs", "parquet"):
         ask(["sweep", "guo2015-trial", "--stride", "100", "--no-page", "--out", str(folder / "study")], SLOWEST)
         (folder / "study" / "guo2015-trial.parquet").rename(log.with_name("table.parquet"))
-    if asked.kind in ("inputs", "logs", "tables", "ssp", "fmus", "parquet"):
+    if asked.kind in ("inputs", "logs", "tables", "ssp", "fmus", "parquet", "scenes", "drives"):
         limit_memory()
     tried, found, until = 0, 0, time.monotonic() + asked.seconds
     for words, mistake in KINDS[asked.kind](folder, log, random.Random(seed)):

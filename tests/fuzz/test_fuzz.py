@@ -100,7 +100,7 @@ def test_names_that_are_none_cost_that_test_alone(name: str, tmp_path: Path) -> 
     ("kind", "seconds"),
     [
         *(("inputs", 5), ("tables", 3), ("ssp", 3), ("logs", 5), ("calls", 2), ("kills", 10)),
-        *(("fmus", 3), ("journals", 5), ("parquet", 5)),
+        *(("fmus", 3), ("journals", 5), ("parquet", 5), ("scenes", 3), ("drives", 5), ("policies", 5)),
     ],
 )
 def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:

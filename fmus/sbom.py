@@ -10,6 +10,7 @@ import re
 import sys
 import uuid
 import zipfile
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
@@ -147,19 +148,24 @@ def _bom(top: Component, components: list[Component], depends: dict[str, list[st
 
 
 def main(words: list[str] | None = None) -> int:
-    """Write ``<file>.cdx.json`` for each file. Returns 0, or 2 if one is neither a wheel nor an FMU."""
+    """Write ``<file>.cdx.json`` for each file; of files with one name, with the folder before it.
+
+    Returns 0, or 2 if one is neither a wheel nor an FMU.
+    """
     parser = argparse.ArgumentParser(prog="python -m fmus.sbom", description=__doc__)
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a wheel (.whl) or an FMU (.fmu)")
     parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where to (default: here)")
     arguments = parser.parse_args(words)
     arguments.out.mkdir(parents=True, exist_ok=True)
+    names = Counter(path.name for path in arguments.files)
     for path in arguments.files:
         try:
             bill = wheel_sbom(path) if path.suffix == ".whl" else fmu_sbom(path)
         except ValueError as error:
             print(error, file=sys.stderr)
             return 2
-        target = arguments.out / f"{path.name}.cdx.json"
+        name = path.name if names[path.name] == 1 else f"{path.resolve().parent.name}-{path.name}"
+        target = arguments.out / f"{name}.cdx.json"
         write_whole(target, json.dumps(bill, indent=1) + "\n")
         print(target)
     return 0

@@ -138,7 +138,7 @@ class Bench:
         (own / "tmp").mkdir(parents=True)
         (own / "few.yaml").write_text(STUDY)
         (own / "small.yaml").write_text(SEARCHED)
-        mark, streams = self.folder / f"reached-{self._runs}", f"{self.folder}/{self._runs}."
+        mark, streams = self.folder / f"reached-{self._runs}", f"{self.folder}/said-{self._runs}-"
         fault = {"APA_FAIL_CALL": call, "APA_FAIL_AT": str(at), "APA_FAIL_UNDER": str(own), "APA_FAIL_MARK": str(mark)}
         asked = {
             "words": [*COMMANDS[command], "--out", "out"],

@@ -51,6 +51,16 @@ def test_an_fmu_lists_its_files_with_their_hashes(native_fmus: Any, tmp_path: Pa
     assert bill["metadata"]["component"]["name"] == "Toy"
 
 
+def test_fmus_of_one_name_have_a_bill_each(native_fmus: Any, tmp_path: Path) -> None:
+    paths = [tmp_path / kind / "Toy.fmu" for kind in ("native", "python")]
+    for path in paths:
+        path.parent.mkdir()
+        path.write_bytes(native_fmus["Toy"].read_bytes())
+    assert main([*map(str, paths), "--out", str(tmp_path)]) == 0
+    bills = sorted(path.name for path in tmp_path.glob("*.json"))
+    assert bills == ["native-Toy.fmu.cdx.json", "python-Toy.fmu.cdx.json"]
+
+
 @pytest.mark.parametrize("suffix", [".whl", ".fmu"])
 def test_another_file_is_refused_in_one_line(tmp_path: Path, capsys: Any, suffix: str) -> None:
     text, empty = tmp_path / f"text{suffix}", tmp_path / f"empty{suffix}"

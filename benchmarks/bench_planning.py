@@ -15,7 +15,7 @@ from pathlib import Path
 from benchmarks.results import record, size
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
-from orchestrator.studies.benchmark.driving import DOUBLE_TRACK, KINEMATIC, SceneChanges, drive_scene
+from orchestrator.studies.benchmark.driving import DOUBLE_TRACK, KINEMATIC, drive_scene
 from orchestrator.studies.benchmark.planning import plan_scene
 from orchestrator.studies.benchmark.scenes import valet_scenarios
 
@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] = ()) -> None:
     print(HEAD, "|---:" * 10 + "|", sep="\n")
     for name in asked.files or size(valet_scenarios(), ["valet-parallel"]):
         plan = plan_scene(load_scenario(name, asked.set), PASSES)
-        drive, _ = drive_scene(name, body, files, "native", changes=SceneChanges(asked.set))
+        drive, _ = drive_scene(name, body, files, "native", overrides=asked.set)
         slowest = max(plan.sample_times)
         rows.append((plan.time, slowest, drive.parked))
         print(

@@ -1,6 +1,8 @@
 """Each benchmark runs, and its C compiles with the models' C as it is now and does what CPython does."""
 
+import ast
 import importlib
+import importlib.util
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from benchmarks.results import Measurement, lasting, read_table, write_table
 from modelkit.variables import flatten
 
 BENCHMARKS = sorted(file.stem.removeprefix("bench_") for file in Path("benchmarks").glob("bench_*.py"))
+PROJECT = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator", "apa_cosim")
 NEEDS_LITTLE = ("cosim",)
 
 
@@ -50,6 +53,16 @@ def test_controllers(bench: Any) -> None:
     flat = [np.array(flatten(item)) for item in (stages, weights)]
     found = library.bench_solve(1, *now, *(item.ctypes.data for item in flat))
     assert found == module.solve(now, stages, weights, 1e-10, 40).nodes[0].u
+
+
+@pytest.mark.parametrize("file", [*Path("benchmarks").glob("*.py"), *Path("docs").glob("*.py")], ids=str)
+def test_what_it_imports_of_the_project_is_there(file: Path) -> None:
+    """Neither folder is type-checked, and most of the scripts run before a release only."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in PROJECT:
+            module = importlib.import_module(node.module or "")
+            for name in node.names:
+                assert hasattr(module, name.name) or importlib.util.find_spec(f"{node.module}.{name.name}"), name.name
 
 
 @pytest.mark.parametrize(

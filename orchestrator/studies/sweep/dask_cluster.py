@@ -14,6 +14,8 @@ from orchestrator.studies.sweep.engine import safe_children
 
 distributed: Any = importlib.import_module("distributed")
 HOST = "127.0.0.1"
+FILES, FILES_PER_WORKER = 32, 12
+"""Open files of a study with its scheduler, 22 and 11 measured: with fewer, tornado reports in an endless loop."""
 
 
 class QuietScheduler(distributed.Scheduler):  # type: ignore[misc]
@@ -33,6 +35,16 @@ class QuietWorker(distributed.Worker):  # type: ignore[misc]
         """Open no socket."""
 
 
+def max_open_files() -> int:
+    """Return how many files this process may open; many where the system has no limit."""
+    try:
+        import resource
+    except ImportError:
+        return 1 << 30
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return 1 << 30 if soft == resource.RLIM_INFINITY else int(soft)
+
+
 class PrivateCluster:
     """Scheduler and workers, which speak TLS with certificates made for this run and kept in memory.
 
@@ -41,6 +53,10 @@ class PrivateCluster:
     """
 
     def __init__(self, workers: int) -> None:
+        needed, limit = FILES + FILES_PER_WORKER * workers, max_open_files()
+        if limit < needed:
+            text = f"{workers} Dask workers need {needed} open files, and the limit is {limit} (ulimit -n)"
+            raise BadInput(text, key="--dask")
         try:
             self.security = distributed.Security.temporary()
         except ImportError as error:
@@ -48,6 +64,7 @@ class PrivateCluster:
         self._folder: Path = new_folder("dask")
         common = {"host": HOST, "protocol": "tls://", "security": self.security}
         options = {**common, "nthreads": 1, "worker_class": QuietWorker, "local_directory": str(self._folder)}
+        options["silence_logs"] = logging.WARNING
         START_LOG.disabled = True  # what fails is raised; Dask prints its tracebacks, besides
         try:
             with safe_children():

@@ -46,16 +46,15 @@ def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutp
     over = state in (ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
     manual = state in (ParkingState.STANDBY, ParkingState.SEARCHING, ParkingState.CONFIRMING)
     steers = not over and not manual and state != ParkingState.PLANNING
-    driving = state == ParkingState.DRIVING
     by_driver = is_driver_driving(params)
-    brakes = memory.verdict.is_blocked or not (by_driver or driving)
+    brakes = memory.verdict.is_blocked or not (by_driver or state == ParkingState.DRIVING or memory.speed != 0.0)
     return ParkingOutput(
         steering_wheel_request=memory.steering_wheel_angle if steers else 0.0,
         steering_active=steers,
         prompt=prompt_of(memory, params),
         advised_speed=params.slot.speed if state == ParkingState.SEARCHING else abs(memory.speed),
         speed_control_active=not over and not manual and not by_driver,
-        speed_request=memory.speed if driving and not by_driver else 0.0,
+        speed_request=0.0 if by_driver else memory.speed,
         brake_request=(over or (brakes and not manual)) and state != ParkingState.TAKEOVER,
         phase=PHASE_OF_STATE[state],
         reason=memory.reason,

@@ -10,7 +10,10 @@ from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import (
     PathProgress,
+    SpeedTracking,
     is_at_end,
+    learn_speed_delay,
+    must_stop,
     next_segment,
     profile_speed,
     set_out,
@@ -27,7 +30,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
     MonitorVerdict,
     VehicleMotion,
     monitor_collision,
-    stopping_distance,
 )
 from controller_fmu.parking.monitor.fault_monitor import (
     ExpectedMotion,
@@ -69,7 +71,7 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
-from modelkit.maths import clamp, sign
+from modelkit.maths import clamp, move_towards, sign
 from modelkit.vocabulary import Pose
 
 REPLAN_TIME = 0.3
@@ -144,6 +146,9 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     """Return the memory with the progress on the path and the collision monitor's verdict."""
     context = FollowingContext(params.car, params.drive)
     memory = memory._replace(progress=track_path(memory.progress, inputs.odometry, inputs.measured_speed, context))
+    if memory.state == ParkingState.DRIVING and not is_driver_driving(params):
+        speeds = speed_tracking(memory, inputs, params)
+        memory = memory._replace(progress=learn_speed_delay(memory.progress, speeds, params.sample_time, context))
     direction = sign(memory.progress.path.segments[memory.progress.segment].distance)
     angle = inputs.steering_wheel_angle
     if memory.state == ParkingState.STEERING:
@@ -231,8 +236,7 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     blocked = memory.verdict.is_blocked
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
-    delay = params.drive.driver_reaction if is_driver_driving(params) else params.drive.brake_delay
-    stop = stopping_distance(abs(speed), delay, params.drive.brake_deceleration)
+    speeds = speed_tracking(memory, inputs, params)
     lost = abs(progress.lateral_error) > params.monitor.corridor
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
@@ -242,13 +246,21 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
-        | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or halts)
+        | bit(Condition.MUST_STOP, must_stop(progress, speeds, FollowingContext(params.car, params.drive)) or halts)
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
         | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)
         | bit(Condition.IN_PLACE, in_place)
         | bit(Condition.MISSED, straightens and straight and standing and not in_place)
     )
+
+
+def speed_tracking(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SpeedTracking:
+    """Return the speed, measured and requested; a driver is not requested, but brakes after a reaction time."""
+    measured = abs(inputs.measured_speed)
+    if is_driver_driving(params):
+        return SpeedTracking(measured, measured, params.drive.driver_reaction)
+    return SpeedTracking(measured, abs(memory.speed), max(params.drive.brake_delay, memory.progress.speed_delay))
 
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
@@ -297,7 +309,7 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.DRIVING and before != ParkingState.DRIVING:
         memory = memory._replace(progress=set_out(memory.progress))
     memory = memory._replace(state=state)
-    return _request(memory, context, params)
+    return _request(memory, inputs, context, params)
 
 
 def is_slot_kept(memory: ParkingMemory) -> bool:
@@ -327,7 +339,7 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
             remembered=(EchoObstacle(),) * MAX_REMEMBERED, echoes=(EchoObstacle(),) * MAX_SENSORS
         ),
         plan=PlanProgress(),
-        progress=PathProgress(stop_correction=memory.progress.stop_correction),
+        progress=PathProgress(speed_delay=memory.progress.speed_delay),
         verdict=MonitorVerdict(),
         clocks=FaultClocks(steering=memory.clocks.steering),
     )
@@ -345,7 +357,9 @@ def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
     return ParkingMemory(state=memory.state, perception=Perception(time=memory.perception.time))
 
 
-def _request(memory: ParkingMemory, context: FollowingContext, params: ParkingParams) -> ParkingMemory:
+def _request(
+    memory: ParkingMemory, inputs: ParkingSystemInput, context: FollowingContext, params: ParkingParams
+) -> ParkingMemory:
     """Return the memory with the requested steering-wheel angle and speed."""
     state = memory.state
     limit = params.car.steering.angle_limit
@@ -359,6 +373,9 @@ def _request(memory: ParkingMemory, context: FollowingContext, params: ParkingPa
     if state == ParkingState.STRAIGHTENING:
         wheel = 0.0
     if state == ParkingState.DRIVING:
-        allowed = profile_speed(memory.progress.upcoming, memory.verdict.speed_limit, context)
+        speeds = speed_tracking(memory, inputs, params)
+        allowed = profile_speed(memory.progress, speeds, memory.verdict.speed_limit, context)
         speed = memory.progress.direction * allowed
+    if state == ParkingState.STOPPING and not memory.verdict.is_blocked:
+        speed = move_towards(memory.speed, 0.0, params.drive.brake_deceleration * params.sample_time)
     return memory._replace(steering_wheel_angle=wheel, speed=speed)

@@ -37,12 +37,13 @@ from controller_fmu.parking.objects.track import (
     with_expectation,
 )
 from controller_fmu.parking.obstacle_map import without_explained
+from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.perception import surface_near
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
-from controller_fmu.parking.system import parking_sample
+from controller_fmu.parking.system import enter_state, parking_sample
 from modelkit.car import Car, SensorMount
 from modelkit.geometry import Point
 from modelkit.store import new_store
@@ -290,3 +291,15 @@ def test_the_vehicle_stands_for_some_time_once_it_has_stopped_for_who_approaches
     after = parking_sample(new_store(PlanningWork), before, inputs, ParkingParams(), 10_000_000)
     assert after.verdict.is_blocked
     assert (after.perception.yields > 0) == waits
+
+
+def test_the_requested_speed_falls_gently_at_a_planned_stop_and_at_once_where_the_monitor_brakes() -> None:
+    params, inputs = ParkingParams(), ParkingSystemInput(apa_switch=True)
+    stopping = ParkingMemory(state=ParkingState.STOPPING, speed=-0.12)
+    after = enter_state(stopping, ParkingState.STOPPING, inputs, params)
+    assert after.speed == pytest.approx(-0.12 + 1.0 * params.sample_time)
+    assert not parking_outputs(after, params).brake_request
+    blocked = stopping._replace(verdict=MonitorVerdict(is_blocked=True))
+    after = enter_state(blocked, ParkingState.STOPPING, inputs, params)
+    assert after.speed == 0.0
+    assert parking_outputs(after, params).brake_request

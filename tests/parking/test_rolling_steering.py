@@ -9,11 +9,20 @@ from hypothesis import strategies as st
 from controller_fmu.common.chart import bit
 from controller_fmu.parking.chart import Condition, ParkingState
 from controller_fmu.parking.following.params import START_ACCELERATION, FollowingContext, FollowingParams
-from controller_fmu.parking.following.path_tracking import PathProgress, begin_path, next_segment
+from controller_fmu.parking.following.path_tracking import (
+    PathProgress,
+    SpeedTracking,
+    begin_path,
+    learn_speed_delay,
+    must_stop,
+    next_segment,
+    profile_speed,
+)
 from controller_fmu.parking.following.rolling_steering import (
     MIN_ROLLING_SPEED,
     OVERRUN_FACTOR,
     ROOMY_FACTOR,
+    UpcomingStop,
     reference_at,
     standstill_before,
     transition_after,
@@ -28,6 +37,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
 from controller_fmu.parking.system import conditions_of
 from modelkit.car import Car
+from modelkit.maths import move_towards
 from modelkit.vocabulary import Pose
 
 CONTEXT = FollowingContext(Car(), FollowingParams())
@@ -231,3 +241,37 @@ def test_the_vehicle_sets_out_when_its_wheel_may_turn_the_rest_on_the_move(share
     inputs = ParkingSystemInput(steering_wheel_angle=rest)
     bits = conditions_of(memory, inputs, params)
     assert bool(bits & bit(Condition.WHEEL_TURNED, True)) == sets_out
+
+
+def stop_from_speed(lag: float, delay: float) -> tuple[float, float, float]:
+    """Return where a vehicle with a lag [s] stops (m before the end), its largest deceleration, the delay learnt."""
+    law, dt = CONTEXT.drive, 0.01
+    progress, speed, requested, hardest = (
+        PathProgress(upcoming=UpcomingStop(3.0, 0.8), speed_delay=delay),
+        0.8,
+        0.8,
+        0.0,
+    )
+    stops = False
+    while speed > 1e-3:
+        tracking = SpeedTracking(speed, requested, max(law.brake_delay, progress.speed_delay))
+        if not stops:
+            progress = learn_speed_delay(progress, tracking, dt, CONTEXT)
+        stops = stops or must_stop(progress, tracking, CONTEXT)
+        slower = move_towards(requested, 0.0, law.brake_deceleration * dt)
+        requested = slower if stops else profile_speed(progress, tracking, 9.0, CONTEXT)
+        after = speed + (requested - speed) * dt / lag
+        hardest = max(hardest, (speed - after) / dt)
+        ahead = progress.upcoming._replace(left=progress.upcoming.left - 0.5 * (speed + after) * dt)
+        progress, speed = progress._replace(upcoming=ahead), after
+    return progress.upcoming.left, hardest, progress.speed_delay
+
+
+@pytest.mark.parametrize("lag", [0.02, 0.1, 0.2])
+def test_a_vehicle_stops_gently_and_in_place_however_late_its_speed_follows(lag: float) -> None:
+    """The first stop teaches the delay, so the next one ends in place."""
+    _, hardest, delay = stop_from_speed(lag, 0.0)
+    left, harder, _ = stop_from_speed(lag, delay)
+    assert delay == pytest.approx(lag, abs=0.06)
+    assert abs(left) < 0.012
+    assert max(hardest, harder) < 1.2

@@ -24,8 +24,8 @@ class FollowingParams(NamedTuple):
     speed: Annotated[float, Signal("m/s", "largest speed on a path", 0.1, 3.0, HOUSE)] = 0.8
     creep_speed: Annotated[float, Signal("m/s", "speed at the end of a segment", 0.01, 0.5, HOUSE)] = 0.08
     deceleration: Annotated[float, Signal("m/s2", "planned deceleration towards a stop", 0.1, 5.0, HOUSE)] = 0.5
-    brake_deceleration: Annotated[float, Signal("m/s2", "deceleration when braking to a stop", 0.1, 10.0, HOUSE)] = 2.0
-    brake_delay: Annotated[float, Signal("s", "delay from a brake request to its effect", 0.0, 2.0, HOUSE)] = 0.03
+    brake_deceleration: Annotated[float, Signal("m/s2", "deceleration at the end of a segment", 0.1, 10.0, HOUSE)] = 1.0
+    brake_delay: Annotated[float, Signal("s", "least delay from a speed request to its effect", 0.0, 2.0, HOUSE)] = 0.03
     driver_reaction: Annotated[float, Signal("s", "delay from a prompt to the driver's brake", 0.0, 5.0, HOUSE)] = 0.3
     rolling_offset: Annotated[
         float, Signal("m", "lateral offset for steering while rolling; 0: it steers at standstill", 0.0, 0.2, HOUSE)

@@ -28,10 +28,10 @@ from modelkit.vocabulary import Pose
 
 MIN_REMAINING = 0.03
 """A rest [m] of a segment that is not worth driving: the vehicle's stopping errs by as much."""
-STOP_LEARNING_RATE = 0.6
-"""Fraction of the last stop's error that the next stop makes up for."""
-MAX_STOP_CORRECTION = 0.02
-"""[m]"""
+DELAY_LEARNING_TIME = 0.5
+"""Time constant [s] with which the delay of the speed is learnt: a third of a stop from top speed."""
+MAX_SPEED_DELAY = 0.4
+"""[s]: lags of drive and brake of 0.3 s, and a sample of both measurement and request."""
 RECOVERY_DISTANCE = 0.5
 """Distance [m] over which a lateral error inside a bend is taken back by what the steering has left."""
 FOOT_ITERATIONS = 2
@@ -55,11 +55,19 @@ class PathProgress(NamedTuple):
     front_wheel_angle: float = 0.0
     """That leads back to the path [rad]."""
     upcoming: UpcomingStop = UpcomingStop()
-    stop_correction: float = 0.0
-    """The vehicle was found to stop so much [m] early."""
+    speed_delay: float = 0.0
+    """The speed was found to follow its request so much [s] later while the vehicle slows down."""
     direction: float = 0.0
     """Last driven; 0: not yet."""
     manoeuvres: int = 0
+
+
+class SpeedTracking(NamedTuple):
+    """Speed as measured, and as last requested, both >= 0 [m/s], and by how much [s] it is delayed."""
+
+    measured: float = 0.0
+    requested: float = 0.0
+    delay: float = 0.0
 
 
 def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: FollowingContext) -> PathProgress:
@@ -71,7 +79,7 @@ def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: Fo
         remaining=remaining,
         reference=start,
         upcoming=upcoming_stop(path, 0, remaining, context),
-        stop_correction=before.stop_correction,
+        speed_delay=before.speed_delay,
         direction=before.direction,
         manoeuvres=before.manoeuvres,
     )
@@ -122,7 +130,6 @@ def next_segment(progress: PathProgress, context: FollowingContext) -> PathProgr
         return progress
     segment = progress.path.segments[progress.segment]
     begin = pose_along_arc(progress.begin, segment.distance, segment.curvature)
-    correction = progress.stop_correction + STOP_LEARNING_RATE * progress.upcoming.left
     number = progress.segment + 1
     remaining = abs(progress.path.segments[number].distance)
     return progress._replace(
@@ -131,7 +138,6 @@ def next_segment(progress: PathProgress, context: FollowingContext) -> PathProgr
         remaining=remaining,
         reference=begin,
         upcoming=upcoming_stop(progress.path, number, remaining, context),
-        stop_correction=clamp(correction, -MAX_STOP_CORRECTION, MAX_STOP_CORRECTION),
     )
 
 
@@ -155,12 +161,45 @@ def standstill_wheel_angle(progress: PathProgress, context: FollowingContext) ->
     return math.atan(context.car.wheelbase * curvature)
 
 
-def profile_speed(upcoming: UpcomingStop, limit: float, context: FollowingContext) -> float:
-    """Return the speed [m/s] for what lies ahead, at most ``limit`` but never below the creep speed."""
+def profile_speed(progress: PathProgress, speed: SpeedTracking, limit: float, context: FollowingContext) -> float:
+    """Return the speed [m/s] to request, at most ``limit`` but never below the creep speed."""
+    slowing = stopping_speed(progress, speed, context)
+    return max(context.drive.creep_speed, min(progress.upcoming.speed, min(slowing, limit)))
+
+
+def stopping_speed(progress: PathProgress, speed: SpeedTracking, context: FollowingContext) -> float:
+    """Return the speed [m/s] to request of a vehicle that slows down to the creep speed at the next stop.
+
+    It is that of a constant deceleration where the speed will have come down to what is requested now.
+    """
     law = context.drive
-    left = max(0.0, upcoming.left)
-    slowing = math.sqrt(law.creep_speed * law.creep_speed + 2.0 * law.deceleration * left)
-    return max(law.creep_speed, min(upcoming.speed, min(slowing, limit)))
+    delayed = 0.5 * speed.delay * (speed.measured + min(speed.requested, speed.measured))
+    left = max(0.0, progress.upcoming.left - delayed)
+    return math.sqrt(law.creep_speed * law.creep_speed + 2.0 * law.deceleration * left)
+
+
+def must_stop(progress: PathProgress, speed: SpeedTracking, context: FollowingContext) -> bool:
+    """Return whether the vehicle has to come to rest now, to stand where the next stop is planned.
+
+    Behind a lag of first order it goes on by the speed times the lag, whatever is requested until then.
+    """
+    now = min(speed.requested, speed.measured)
+    needed = speed.delay * speed.measured + 0.5 * now * now / context.drive.brake_deceleration
+    return progress.upcoming.left <= needed
+
+
+def learn_speed_delay(
+    progress: PathProgress, speed: SpeedTracking, dt: float, context: FollowingContext
+) -> PathProgress:
+    """Return the progress ``dt`` [s] later: how far the speed is above its request while both fall before a stop."""
+    law = context.drive
+    slowing = stopping_speed(progress, speed, context)
+    slows = law.creep_speed < slowing <= speed.requested < speed.measured
+    if not slows or slowing > progress.upcoming.speed:
+        return progress
+    delay = min((speed.measured - speed.requested) / law.deceleration, MAX_SPEED_DELAY)
+    share = min(dt / DELAY_LEARNING_TIME, 1.0)
+    return progress._replace(speed_delay=progress.speed_delay + share * (delay - progress.speed_delay))
 
 
 def _point_before_end(progress: PathProgress, remaining: float) -> Pose:

@@ -15,6 +15,7 @@ from controller_fmu.parking.map.facing_surface import (
     MAX_FACING_RANGE,
     facing_segment,
     is_pair,
+    point_between,
 )
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import range_by_map, update_map
@@ -56,6 +57,7 @@ from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.slots.slot_filter import (
     SlotFilter,
     count_absent,
+    is_slot_corner,
     predict_slot,
     update_slot,
 )
@@ -96,7 +98,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(search=with_slot_type(memory.search, params))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
-        return memory._replace(perception=_with_tracks(memory.perception, tracks, inputs, params))
+        return memory._replace(perception=_with_tracks(memory.perception, memory.search, tracks, inputs, params))
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
 
 
@@ -147,11 +149,15 @@ def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgr
 
 
 def _with_tracks(
-    perception: Perception, tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
+    perception: Perception,
+    search: SearchProgress,
+    tracks: tuple[ObjectTrack, ...],
+    inputs: ParkingSystemInput,
+    params: ParkingParams,
 ) -> Perception:
     """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
     echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
-    landmarks = _with_facing(perception.local_map.landmarks, tracks, inputs, params)
+    landmarks = _with_facing(perception.local_map.landmarks, search, tracks, inputs, params)
     yields = perception.yields
     for track in tracks:
         if is_yielded_to(track):
@@ -172,9 +178,17 @@ def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
 
 
 def _with_facing(
-    landmarks: tuple[Landmark, ...], tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
+    landmarks: tuple[Landmark, ...],
+    search: SearchProgress,
+    tracks: tuple[ObjectTrack, ...],
+    inputs: ParkingSystemInput,
+    params: ParkingParams,
 ) -> tuple[Landmark, ...]:
-    """Return the landmarks with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan."""
+    """Return the landmarks with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan.
+
+    Into a slot across the road the bumper passes its corners, where both echoes may come from: they are no surface.
+    """
+    is_across = search.slot.type == SlotType.PERPENDICULAR
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     for number in range(BUMPER_SENSORS):
@@ -183,14 +197,11 @@ def _with_facing(
             b = tracks[number + 1]
             is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
             if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
-                new = facing_segment(
-                    sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry),
-                    a.range,
-                    sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry),
-                    b.range,
-                    variance,
-                )
-                if new.type != LandmarkType.NONE:
+                first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+                second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
+                new = facing_segment(first, a.range, second, b.range, variance)
+                at = point_between(first, a.range, second, b.range)
+                if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(search.slot_filter, at)):
                     landmarks = put_facing(landmarks, new, params.mapping)
     return landmarks
 

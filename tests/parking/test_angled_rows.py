@@ -134,6 +134,9 @@ def test_a_pillar_before_a_car_narrows_the_slot_by_no_more_than_it_is_wide() -> 
     assert (slot.type, slot.reason) == (SlotType.PERPENDICULAR, Reason.NONE)
     assert slot.is_nose_in
     assert OPENING - 0.5 < slot.ahead.start - slot.behind.end < OPENING + 0.7
+    goal = goal_pose(slot, OUTLINE, SlotParams())
+    half = OUTLINE.half_length * abs(math.sin(goal.heading)) + OUTLINE.half_width * abs(math.cos(goal.heading))
+    assert abs(goal.y + OUTLINE.centre_ahead * math.sin(goal.heading) + half) < 0.2, "flush with the cars"
 
 
 def test_the_driver_chooses_how_to_enter() -> None:

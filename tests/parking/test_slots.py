@@ -7,9 +7,12 @@ import pytest
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.facing_surface import point_between
+from controller_fmu.parking.map.free_space import FreeSpace
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.sensor import SensorPose
 from controller_fmu.parking.obstacle_map import without_inside
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import stands_in_slot
@@ -26,7 +29,8 @@ from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import MAX_MEMBERS, RowMember, SlotRow, find_row, side_as_member
-from modelkit.geometry import Box
+from controller_fmu.parking.slots.slot_filter import begin_slot_filter, is_slot_corner, slot_of_filter
+from modelkit.geometry import Box, Point
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
 
@@ -335,3 +339,29 @@ def test_two_sides_of_one_car_count_as_one_car() -> None:
     cars = [side(0.0, 0.0, 4.0, 1.8), side(-4.4, 0.0, -4.0, 1.8)]
     once, twice = (row_beside(sides, 0.0).frame.heading for sides in (cars, [*cars, side(0.3, 0.02, 4.0, 1.2)]))
     assert math.degrees(twice - once) == pytest.approx(0.0, abs=0.1)
+
+
+def test_posts_beside_cars_narrow_a_slot_but_move_no_front() -> None:
+    """Pillars stand 0.6 m behind the line of the fronts: the slot is between them, the vehicle flush with the cars."""
+    width, off = 3.4, 0.3
+    cars = [RowMember(x - 0.9, x + 0.9, 0.0, True, True) for x in (0.5 * width + 0.9, -0.5 * width - 0.9)]
+    row = SlotRow(side=-1.0, members=(*cars, *(RowMember(),) * (MAX_MEMBERS - 2)), used=2)
+    posts = [Landmark(LandmarkType.POINT, sense * (0.5 * width - off), -0.6, confirmations=9) for sense in (-1.0, 1.0)]
+    landmarks = (*posts, *(Landmark(),) * (MAX_LANDMARKS - 2))
+    slot = find_slot(row, landmarks, FreeSpace().right, OUTLINE, SlotParams(), MappingParams())
+    assert slot.ahead.start - slot.behind.end == pytest.approx(width - 2.0 * off)
+    assert slot.front == pytest.approx(0.0)
+    known = slot_of_filter(slot, begin_slot_filter(slot), OUTLINE)
+    assert known.front == pytest.approx(0.0)
+
+
+def test_two_sensors_that_measure_a_corner_of_the_slot_show_no_surface() -> None:
+    slot = slot_after(bays(2.9, 1), 1, 4.9)
+    slot_filter = begin_slot_filter(slot)
+    corner = row_point(slot.row, slot.ahead.start, slot.ahead.start_front)
+    for at, is_corner in ((corner, True), (Point(corner.x - 1.0, corner.y - 1.0), False)):
+        pair = tuple(SensorPose(at.x + 0.2 + off, at.y + 0.9, 0.0, -1.0) for off in (-0.25, 0.25))
+        ranges = tuple(math.hypot(at.x - sensor.x, at.y - sensor.y) for sensor in pair)
+        point = point_between(pair[0], ranges[0], pair[1], ranges[1])
+        assert (point.x, point.y) == (pytest.approx(at.x), pytest.approx(at.y))
+        assert is_slot_corner(slot_filter, point) == is_corner

@@ -28,6 +28,17 @@ def is_pair(number: int) -> bool:
     return number != 3 and number != BUMPER_SENSORS - 1
 
 
+def point_between(a: SensorPose, a_range: float, b: SensorPose, b_range: float) -> Point:
+    """Return the point before two sensors that is at both ranges [m], or between them if there is none."""
+    dx = b.x - a.x
+    dy = b.y - a.y
+    base = math.sqrt(dx * dx + dy * dy)
+    along = 0.5 * (base + (a_range * a_range - b_range * b_range) / base)
+    ahead = math.sqrt(max(a_range * a_range - along * along, 0.0))
+    ahead = ahead if a.axis_y * dx - a.axis_x * dy > 0.0 else -ahead
+    return Point(a.x + (along * dx - ahead * dy) / base, a.y + (along * dy + ahead * dx) / base)
+
+
 def facing_segment(a: SensorPose, a_range: float, b: SensorPose, b_range: float, variance: float) -> Landmark:
     """Return the segment between the feet [m] on two sensors' axes; ``variance`` [m2]; type NONE if they disagree."""
     base = math.sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y))

@@ -23,6 +23,7 @@ from controller_fmu.parking.slots.candidate import (
     CAR_WIDTH,
     CAR_WIDTH_SIGMA,
     LOG_TEN,
+    MAX_POST,
     length_log_likelihood,
     row_point,
 )
@@ -30,6 +31,7 @@ from controller_fmu.parking.slots.row import (
     ASKEW_VARIANCE,
     MAX_MEMBERS,
     MAX_TILT,
+    MEMBER_GAP,
     MIN_SIDE,
     NO_MEMBER,
     RowMember,
@@ -46,8 +48,6 @@ LINE_DEPTH = 0.7
 """Cars stand up to this far [m] off the row's line, staggered or misaligned; the next corner of a front lies deeper."""
 LINE_LENGTH = 2.0
 """Corners that tell the line's direction lie at least so far apart [m]: they are of two cars."""
-MIN_CAR_SIDE = 0.6
-"""A shorter side [m] may be a pillar's."""
 POST_WEIGHT = 0.2
 """A corner without a side speaks for the line as so much [m] of a side does."""
 BODY_DEPTHS = (0.1, 0.25, 0.4, 0.55, 0.7)
@@ -58,6 +58,8 @@ MAX_FREE_BODY = 5
 """Log of the likelihood of a point of a body that was observed free, of so many at most."""
 POST_WIDTH = 0.4
 """Of a pillar [m]."""
+POST_GAP = 0.2
+"""What stands farther [m] beside a car's flank is none of its corners: twice what the ends of sides are off."""
 
 
 class ObliqueSides(NamedTuple):
@@ -167,29 +169,56 @@ def _nearest_end(landmark: Landmark, vehicle: Pose, side: float) -> Point:
 def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow, lean: float) -> AngledRow:
     """Return a row whose slots lead forward (``lean`` 1) or backward (-1), from ahead to behind."""
     line = _line_of(corners, row.side * row.slope)
-    row = row._replace(slope=row.side * line.slope)
     total = 0.0
     bay = NO_MEMBER
-    last = NO_MEMBER
+    before = NO_MEMBER
     last_car = NO_MEMBER
+    first = _next_corner(corners, line, NO_MEMBER)
     for _ in range(MAX_MEMBERS):
-        first = _next_corner(corners, line, last)
         if first > -NO_MEMBER:
-            last = first - 0.5 * CAR_WIDTH
+            behind = _next_corner(corners, line, first - 0.5 * CAR_WIDTH)
             car = _car_of(corners, line, first, lean, row.side)
             free = _free_body(row, car, rays)
-            if _longest_side(corners, line, first) > MIN_CAR_SIDE:
+            pitch = before - first if lean > 0.0 else first - behind
+            if _longest_side(corners, line, first) > MAX_POST:
                 total += _side_log_likelihood(corners, line, first) - FREE_BODY * min(free, MAX_FREE_BODY)
                 bay = min(bay, last_car - car.start)
                 last_car = car.start
-            elif free > 0:
+            elif free > 1 or pitch < CAR_WIDTH + MEMBER_GAP:
                 car = _as_post(car, lean)
+            before = first
+            first = behind
             row = row._replace(
                 members=tuple(car if number == row.used else row.members[number] for number in range(MAX_MEMBERS)),
                 used=row.used + 1,
             )
+    line = _line_through(row, line, lean)
+    row = row._replace(slope=row.side * line.slope, front_at=line.at)
     total += length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA) if bay < 0.5 * NO_MEMBER else 0.0
     return AngledRow(row, total)
+
+
+def _line_through(row: SlotRow, line: CornerLine, lean: float) -> CornerLine:
+    """Return the line through the corners at the road of a row's cars, by least squares; of one car along ``line``."""
+    n = 0.0
+    sx = 0.0
+    sy = 0.0
+    sxx = 0.0
+    sxy = 0.0
+    for number in range(MAX_MEMBERS):
+        car = row.members[number]
+        if number < row.used and car.start_length == 0.0 and car.end_length == 0.0:
+            x = car.end if lean > 0.0 else car.start
+            n += 1.0
+            sx += x
+            sy += car.front
+            sxx += x * x
+            sxy += x * car.front
+    if n == 0.0:
+        return line
+    spread = sxx - sx * sx / n
+    slope = (sxy - sx * sy / n) / spread if spread > LINE_LENGTH else line.slope
+    return CornerLine(slope, (sy - slope * sx) / n)
 
 
 def _next_corner(corners: tuple[RoadCorner, ...], line: CornerLine, last: float) -> float:
@@ -208,19 +237,21 @@ def _corners(
     corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
     for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
+        off = landmark.heading - row.frame.heading
+        turned = 0.25 * wrap_angle(4.0 * off)
         is_side = _is_oblique(landmark, vehicle, row.side, params)
+        is_side = is_side and turned * turned < params.gate * (ASKEW_VARIANCE + landmark.hh)
         is_point = landmark.type == LandmarkType.POINT and is_confirmed(landmark, params)
         end = _nearest_end(landmark, vehicle, row.side)
         if is_side or (is_point and row.side * end.y > 0.0):
             at = point_to_frame(end.x, end.y, Pose(0.0, 0.0, row.frame.heading - vehicle.heading))
-            off = landmark.heading - row.frame.heading
             corner = RoadCorner(
                 at.x,
                 row.side * at.y,
                 length_of(landmark),
                 is_side and abs(math.sin(off)) > abs(math.cos(off)),
                 landmark.start_known and landmark.end_known,
-                0.25 * wrap_angle(4.0 * off) if is_side else 0.0,
+                turned if is_side else 0.0,
                 math.sqrt(landmark.xx + landmark.yy),
                 max(length_of(landmark), POST_WEIGHT),
             )
@@ -280,7 +311,7 @@ def _side_log_likelihood(corners: tuple[RoadCorner, ...], line: CornerLine, firs
     total = 0.0
     for number in range(MAX_CORNERS):
         corner = corners[number]
-        if _is_of_car(corner, line, first) and corner.length > MIN_CAR_SIDE:
+        if _is_of_car(corner, line, first) and corner.length > MAX_POST:
             mean = CAR_LENGTH if corner.is_flank else CAR_WIDTH
             sigma = CAR_LENGTH_SIGMA if corner.is_flank else CAR_WIDTH_SIGMA
             if corner.is_complete:
@@ -306,28 +337,34 @@ def _car_of(corners: tuple[RoadCorner, ...], line: CornerLine, first: float, lea
     What stands beside it narrows the gap there. The far end of a front that is not seen in full is a car's width off.
     """
     edge = first
+    beside = first if lean > 0.0 else NO_MEMBER
     deep = NO_MEMBER
     width = CAR_WIDTH
     width_sigma = CAR_WIDTH_SIGMA
     sigma = 0.0
     tilt = 0.0
     longest = -1.0
+    longest_flank = -1.0
     longest_front = -1.0
     for number in range(MAX_CORNERS):
         corner = corners[number]
         if _is_of_car(corner, line, first):
-            edge = edge if lean > 0.0 else min(edge, corner.along)
+            beside = beside if lean > 0.0 else min(beside, corner.along)
+            is_front = corner.length > 0.0 and not corner.is_flank
             if corner.length > longest:
                 longest = corner.length
                 tilt = corner.tilt
                 sigma = corner.sigma
-                deep = corner.deep if longest_front < 0.0 else deep
-            if not corner.is_flank and corner.length > max(longest_front, MIN_SIDE):
+            if not is_front and corner.length > longest_flank:
+                longest_flank = corner.length
+                edge = corner.along
+            if not corner.is_flank and corner.length > longest_front:
                 longest_front = corner.length
                 deep = corner.deep
-                if corner.is_complete:
-                    width = corner.length
-                    width_sigma = corner.sigma
+                width = corner.length if corner.is_complete and corner.length > MAX_POST else width
+                width_sigma = corner.sigma if corner.is_complete and corner.length > MAX_POST else width_sigma
+            deep = min(deep, corner.deep) if longest_front < 0.0 else deep
+    edge = beside if lean * (beside - edge) > POST_GAP or longest_flank < 0.0 else edge
     turned = side * math.tan(tilt) * width
     if lean > 0.0:
         return RowMember(edge - width, edge, deep, True, True, deep - turned, deep, width_sigma, sigma)

@@ -19,7 +19,7 @@ from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, Landmar
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MAX_MEMBERS, MEMBER_GAP, ROW_DEPTH, RowMember, SlotRow
+from controller_fmu.parking.slots.row import MAX_MEMBERS, MEMBER_GAP, ROW_DEPTH, UNEVEN_SIGMA, RowMember, SlotRow
 from modelkit.geometry import Point
 
 UNKNOWN_DEPTH = 50.0
@@ -45,6 +45,8 @@ MAX_CAR = 6.0
 """A longer side [m] is a wall, and shows nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
+MAX_POST = 0.6
+"""A shorter side [m] may be a pillar's."""
 BAY_WIDTH = 2.6
 BAY_SIGMA = 0.3
 """Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
@@ -54,7 +56,7 @@ SAMPLE_COUNT = 9
 FREE_DEPTHS = (0.4, 1.0, 1.6)
 FREE_FRACTIONS = (0.4, 0.5, 0.6)
 MIN_FREE = 4
-"""Of the nine points so deep [m] and at these fractions of the gap, so many must have been observed free."""
+"""Of the points so deep [m] and at these fractions of the gap, so many must have been observed free."""
 
 
 class SlotType(IntEnum):
@@ -147,7 +149,7 @@ def _candidate(
     width = ahead.start - behind.end
     if width < 2.0 * outline.half_width:
         return SlotCandidate()
-    found = found._replace(front=0.5 * (behind.end_front + ahead.start_front))
+    found = found._replace(front=_front_of(found, number, outline.half_width))
     found = found._replace(depth=gap_depth(found, landmarks, outline, params))
     least_length = 2.0 * outline.half_length + slot.room_along
     least_width = 2.0 * outline.half_width + slot.room_across
@@ -169,25 +171,45 @@ def _candidate(
     return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in, missing=missing)
 
 
+def _front_of(found: SlotCandidate, number: int, half_width: float) -> float:
+    """Return the line of fronts at a gap behind the member ``number``: of cars, also where posts narrow the gap."""
+    row = found.row
+    slope = row.side * row.slope
+    if slope != 0.0:
+        corner = 0.5 * (found.behind.end + found.ahead.start) + (half_width if slope > 0.0 else -half_width)
+        return row.front_at + slope * corner
+    ahead = row.members[number]
+    if is_too_short_for_car(ahead.start_length) and number > 0:
+        ahead = row.members[number - 1]
+    behind = row.members[min(number + 1, MAX_MEMBERS - 1)]
+    if is_too_short_for_car(behind.end_length) and number + 2 < row.used:
+        behind = row.members[min(number + 2, MAX_MEMBERS - 1)]
+    return 0.5 * (behind.end_front + ahead.start_front)
+
+
 def _between_posts(found: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
     """Return a gap as posts in the row, too short to be sides, narrow it."""
-    row = found.row
     behind = found.behind
     ahead = found.ahead
-    for post in range(MAX_LANDMARKS):
-        at = point_to_frame(landmarks[post].x, landmarks[post].y, row.frame)
-        deep = row.side * at.y
-        is_post = landmarks[post].type == LandmarkType.POINT and is_confirmed(landmarks[post], params)
-        if is_post and behind.end + MEMBER_GAP < at.x < 0.5 * (behind.end + ahead.start) and _is_in_row(deep, behind):
+    for post in landmarks:
+        at = point_to_frame(post.x, post.y, found.row.frame)
+        deep = found.row.side * at.y
+        is_post = post.type == LandmarkType.POINT and is_confirmed(post, params)
+        is_behind = at.x < 0.5 * (found.behind.end + found.ahead.start)
+        if is_post and is_behind and at.x > behind.end + _post_offset(found.row, at.x, deep, behind):
             behind = behind._replace(end=at.x, end_front=deep, end_length=MIN_INSET)
-        if is_post and 0.5 * (behind.end + ahead.start) < at.x < ahead.start - MEMBER_GAP and _is_in_row(deep, ahead):
+        if is_post and not is_behind and at.x < ahead.start - _post_offset(found.row, at.x, deep, ahead):
             ahead = ahead._replace(start=at.x, start_front=deep, start_length=MIN_INSET)
     return found._replace(behind=behind, ahead=ahead)
 
 
-def _is_in_row(deep: float, member: RowMember) -> bool:
-    """Return whether a post ``deep`` [m] across a row stands where cars do."""
-    return abs(deep - member.front) < ROW_DEPTH
+def _post_offset(row: SlotRow, along: float, deep: float, member: RowMember) -> float:
+    """Return how far [m] beside a member a post must stand to be none of its corners; one out of the row never does."""
+    front = member.front if row.slope == 0.0 else row.front_at + row.side * row.slope * along
+    off = deep - front
+    if abs(off) > ROW_DEPTH:
+        return UNKNOWN_DEPTH
+    return UNEVEN_SIGMA if off > MIN_INSET else MEMBER_GAP
 
 
 def log_likelihood_ratio(candidate: SlotCandidate) -> float:

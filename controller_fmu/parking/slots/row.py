@@ -74,6 +74,8 @@ class SlotRow(NamedTuple):
     used: int = 0
     slope: float = 0.0
     """Tangent of the road's angle to the frame's x axis: the frame of an angled row is square to the way in."""
+    front_at: float = 0.0
+    """Where the line of the cars' corners at the road is at x = 0, across an angled row [m]."""
     heading_sigma: float = 0.0
     """Standard deviation [rad] of the frame's heading; 0: it is given."""
 

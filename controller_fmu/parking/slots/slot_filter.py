@@ -33,6 +33,7 @@ from controller_fmu.parking.slots.candidate import (
     is_too_short_for_car,
     row_point,
 )
+from controller_fmu.parking.slots.correction import correction_gate
 from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
@@ -298,6 +299,19 @@ def _derivative(state: int, u: Point, turn: float) -> float:
     return u.x if state == 0 else (u.y if state == 1 else (turn if state == 2 else 0.0))
 
 
+def is_slot_corner(slot_filter: SlotFilter, point: Point) -> bool:
+    """Return whether a point [m] is one of a slot's corners, as far as that is known."""
+    for at in (0, AHEAD_OFFSET):
+        dx = point.x - slot_filter.state[at]
+        dy = point.y - slot_filter.state[at + 1]
+        xx = slot_filter.covariance[at * STATE_COUNT + at]
+        yy = slot_filter.covariance[(at + 1) * STATE_COUNT + at + 1]
+        gate = correction_gate(math.sqrt(xx + yy))
+        if slot_filter.is_begun and dx * dx + dy * dy < gate * gate:
+            return True
+    return False
+
+
 def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: VehicleOutline) -> SlotCandidate:
     """Return the slot as the filter knows it, in a row turned by as much as its neighbours were.
 
@@ -317,7 +331,8 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
     b = point_to_frame(state[AHEAD_OFFSET], state[AHEAD_OFFSET + 1], frame)
     behind_front = slot.row.side * a.y
     ahead_front = slot.row.side * b.y
-    front = 0.5 * (behind_front + ahead_front)
+    moved = behind_front - slot.behind.end_front + ahead_front - slot.ahead.start_front
+    front = slot.front + 0.5 * moved
     depth = slot.depth
     if slot.depth < UNKNOWN_DEPTH:
         depth = state[END_INDEX] - (middle.x * slot_filter.into_x + middle.y * slot_filter.into_y)

@@ -246,7 +246,11 @@ def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
 def _complain(text: str) -> None:
     if not text:
         return
-    from rich.markup import escape
+    try:
+        from rich.markup import escape
+    except ImportError:
+        _last_words(text, BAD_INPUT)
+        return
 
     from orchestrator.inputs.text.console import console
 

@@ -14,6 +14,7 @@ import pytest
 
 from fmus import files
 from orchestrator.cli import main
+from orchestrator.inputs.text.failures import exit_code_and_message
 
 ROOT = Path(__file__).parents[2]
 posix = pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
@@ -65,6 +66,21 @@ def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file
     assert str(file) in said
     assert "Traceback" in file.read_text()
     assert "apa list" in file.read_text()
+
+
+@pytest.mark.parametrize(
+    ("module", "code", "text"),
+    [
+        ("distributed.client", 2, "[sweep]"),
+        ("rerun", 2, "[export]"),
+        ("rich.markup", 2, "the package rich is not installed: the installation of apa-cosim is incomplete"),
+        ("orchestrator.no_such_module", 3, "internal error"),
+    ],
+)
+def test_a_package_that_is_not_installed_is_named(module: str, code: int, text: str) -> None:
+    found, line = exit_code_and_message(ModuleNotFoundError(f"No module named {module!r}", name=module), [])
+    assert found == code
+    assert text in line
 
 
 def test_without_memory_it_is_no_internal_error(

@@ -41,6 +41,9 @@ WORDS = {
     errno.ELOOP: "too many levels of symbolic links (a cycle)",
 }
 
+OWN_PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator", "apa_cosim")
+DISTRIBUTION_NAMES = {"distributed": "dask"}
+"""Package of modules -> the requirement that brings it, where the names differ."""
 WITHOUT_NAME = {
     errno.ENOSPC: "output: {}",
     errno.EIO: "output: {}",
@@ -68,9 +71,12 @@ def exit_code_and_message(error: BaseException, words: Sequence[str]) -> tuple[i
     if isinstance(error, MemoryError):
         return BAD_INPUT, SCARCE_RESOURCES
     if isinstance(error, ModuleNotFoundError):
-        extra = _extra_of(error.name or "")
+        package = (error.name or "").partition(".")[0]
+        extra = _extra_of(package)
         if extra:
-            return BAD_INPUT, missing_package(error.name or "", extra)
+            return BAD_INPUT, missing_package(package, extra)
+        if package not in (*OWN_PACKAGES, *sys.stdlib_module_names):
+            return BAD_INPUT, f"the package {package} is not installed: the installation of apa-cosim is incomplete"
     kept = _keep(error, words)
     return INTERNAL_ERROR, f"internal error, no verdict: {one_line(error)}; {kept}"
 
@@ -155,8 +161,8 @@ def _folders() -> list[Path]:
     return [user_log_path("apa-cosim", appauthor=False), Path(tempfile.gettempdir())]
 
 
-def _extra_of(module: str) -> str:
-    """Return the extra of this project that brings a package, empty if none does."""
+def _extra_of(package: str) -> str:
+    """Return the extra of this project that brings a package of modules, empty if none does."""
     from importlib.metadata import PackageNotFoundError, requires
     from re import match
 
@@ -165,5 +171,5 @@ def _extra_of(module: str) -> str:
     except PackageNotFoundError:
         return ""
     found = [match(r"([\w-]+).*extra == ['\"](\w+)['\"]", line.replace("_", "-")) for line in needed]
-    top = module.partition(".")[0].replace("_", "-")
+    top = DISTRIBUTION_NAMES.get(package, package).replace("_", "-")
     return next((item[2] for item in found if item and item[1].lower() in (top, f"{top}-sdk")), "")

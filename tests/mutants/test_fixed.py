@@ -18,6 +18,12 @@ def test_eighty_mistakes_of_all_packages_are_listed_once() -> None:
     assert len({row.file.rpartition("/")[0] for row in rows}) > 30
 
 
+def test_each_mistake_is_in_the_code() -> None:
+    """Whoever changes a line of the list puts the mistake into the new line, and sees its test detect it there."""
+    gone = [f"{row.file}: {row.before}" for row in read_table() if located(row) is None]
+    assert not gone, f"tests/mutants/fixed.tsv: not in the code any more: {gone}"
+
+
 def test_a_mistake_that_is_not_in_the_code_is_not_located() -> None:
     assert located(ROW) is not None
     assert located(ROW._replace(count=9)) is None

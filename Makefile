@@ -68,8 +68,9 @@ lint: $(VENV)/.test
 types: $(VENV)/.test
 	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim tests
 
-bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run
-	$(BIN)/python -m benchmarks
+BENCH ?=
+bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run; BENCH=--resume goes on with an unfinished one
+	$(BIN)/python -m benchmarks $(BENCH)
 
 reproduce: $(VENV)/.test ## The papers' numbers beside ours
 	$(BIN)/apa reproduce all

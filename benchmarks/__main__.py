@@ -7,6 +7,7 @@ import platform
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from benchmarks.results import (
@@ -16,10 +17,12 @@ from benchmarks.results import (
     SKIPPED,
     SMALLEST,
     Measurement,
+    commit,
     is_idle,
     lasting,
     machine,
     read_measurements,
+    read_table,
     write_table,
 )
 
@@ -30,6 +33,7 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(found)}")
     parser.add_argument("--smallest", action="store_true", help="show only that they work; writes no table")
+    parser.add_argument("--resume", action="store_true", help="leave out those that the table has of this commit")
     parser.add_argument("--table", type=Path, default=FILE, help="where the results go")
     parser.add_argument("--in-process", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args(arguments)
@@ -39,11 +43,23 @@ def main(arguments: list[str]) -> int:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(found)}")
     if asked.in_process:
         return run_here(names[0])
+    if asked.resume:
+        names = [name for name in names if name not in measured(asked.table)]
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
     measurements: list[Measurement] = []
-    failed = sum(run_apart(name, asked.smallest, asked.table, measurements) for name in names)
+    failed = 0
+    for number, name in enumerate(names, start=1):
+        begun = time.monotonic()
+        failed += run_apart(name, asked.smallest, asked.table, measurements)
+        print(f"{number} of {len(names)} benchmarks, this one {time.monotonic() - begun:.0f} s", flush=True)
     print(f"\n{text_of(measurements)}")
     return failed
+
+
+def measured(table: Path) -> set[str]:
+    """Return the benchmarks of which the table has results of this commit; none while files are changed."""
+    now = commit()
+    return {row.benchmark for row in read_table(table) if row.commit == now and not now.endswith("+")}
 
 
 def text_of(measurements: list[Measurement]) -> str:
@@ -69,7 +85,7 @@ def run_apart(name: str, is_smallest: bool, table: Path, all_measurements: list[
     They are added to ``all_measurements``.
     """
     print(f"\n== {name}", flush=True)
-    where, was_idle = machine(), is_idle()
+    where, was_idle = machine(), is_smallest or is_idle()
     with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
         file = Path(folder) / "measurements.jsonl"
         environment = {**os.environ, MEASUREMENTS: str(file), SIZE: SMALLEST if is_smallest else ""}

@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import cvxpy
 import daqp
@@ -23,6 +23,7 @@ import skfuzzy
 from skfuzzy import control
 
 from benchmarks.results import record, size
+from benchmarks.rounds import in_turn, timed
 from controller_fmu import MODEL
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
@@ -33,28 +34,24 @@ from modelkit.variables import flatten, variables, with_values
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.recording import inputs_seen
 from orchestrator.studies.bakeoff.entries import CONTROLLERS, scenario_of
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
 from qp_problems import dense, random_problem
 
-ROUNDS, REPEATS = size((5, 50), (1, 1))
+MOST_ROUNDS, REPEATS = size((15, 50), (1, 1))
 PROBLEMS = size(30, 2)
 PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 FUZZY = (PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
 NAMES = ("NB", "NM", "NS", "ZE", "PS", "PM", "PB")
 
 
-def micros(work: Callable[[], Any], count: int, rounds: int = ROUNDS) -> float:
-    """Return the median time [us] of one of ``count`` steps done by ``work``."""
-    work()
-    spent = []
-    for _ in range(rounds):
-        begun = time.perf_counter()
-        work()
-        spent.append(time.perf_counter() - begun)
-    return 1e6 * statistics.median(spent) / count
+def micros(works: dict[str, Callable[[], Any]], counts: dict[str, int]) -> dict[str, float]:
+    """Return name -> median time [us] of one of the ``counts`` steps that each work does, all in turn."""
+    times = in_turn({name: timed(work) for name, work in works.items()}, MOST_ROUNDS)
+    return {name: 1e6 * statistics.median(times[name]) / counts[name] for name in works}
 
 
 def scenarios() -> dict[str, Scenario]:
@@ -68,49 +65,67 @@ def scenarios() -> dict[str, Scenario]:
 
 def seen_by_controller(scenario: Scenario) -> list[Any]:
     """Return what the controller is given in a closed loop, step by step, until the manoeuvre is over."""
-    recording = run_scenario(scenario).recording
+    recording = run_scenario(scenario, fmu_files("native"), kind="native").recording
     final = np.isin(recording.signals[scenario.stop_condition.signal], scenario.stop_condition.final())
     over = int(np.argmax(final)) if final.any() else len(final)
     return inputs_seen(recording, "controller", MODEL)[:over]
 
 
-def slowest(params: Any, seen: list[Any], step_ns: int) -> float:
-    """Return the time [ms] of the slowest step in CPython: of each the shortest of a few drives."""
-    drives = []
-    for _ in range(ROUNDS):
-        state, _ = MODEL.initialize(params)
-        spent = []
-        for inputs in seen:
-            begun = time.perf_counter()
-            state, _ = MODEL.step(state, inputs, params, step_ns)
-            spent.append(time.perf_counter() - begun)
+class StepCost(NamedTuple):
+    """Cost of one step of a controller in a drive."""
+
+    python: float
+    """Mean in CPython [us]."""
+    slowest: float
+    """Of the slowest step in CPython, of each step the shortest of the drives [ms]."""
+    compiled: float
+    """Mean in C [us]."""
+    count: int
+    """Steps in the drive."""
+
+
+def step_cost(library: Any, scenario: Scenario) -> StepCost:
+    """Return the cost of a step of a drive. Raises ``RuntimeError`` if the compiled code ends with other outputs."""
+    params = with_values(MODEL.params, dict(scenario.controller))
+    seen = seen_by_controller(scenario)
+    in_c = compiled_replay(library, params, seen, scenario.step_ns)
+    drives, ends = [], []
+
+    def in_python() -> float:
+        spent, outputs = replay(params, seen, scenario.step_ns)
         drives.append(spent)
-    return 1e3 * max(map(min, zip(*drives, strict=True)))
+        ends.append(outputs)
+        return sum(spent)
+
+    times = in_turn({"CPython": in_python, "compiled": timed(in_c)}, MOST_ROUNDS)
+    if list(in_c()) != ends[0]:
+        raise RuntimeError(f"{scenario.name}: compiled code ends with other outputs")
+    python, fast = (1e6 * statistics.median(values) / len(seen) for values in times.values())
+    return StepCost(python, 1e3 * max(map(min, zip(*drives, strict=True))), fast, len(seen))
 
 
 def bench_controllers(library: Any) -> None:
     """Print the cost of one step of each controller."""
     print(f"\n{'control step [us]':24s}{'CPython':>10s}{'compiled':>10s}{'steps':>10s}{'slowest [ms]':>14s}")
     for name, scenario in scenarios().items():
-        params = with_values(MODEL.params, dict(scenario.controller))
-        seen = seen_by_controller(scenario)
-        fast_replay = compiled_replay(library, params, seen, scenario.step_ns)
-        if list(fast_replay()) != replay(params, seen, scenario.step_ns):
-            raise RuntimeError(f"{name}: compiled code ends with other outputs")
-        python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), len(seen))
-        fast = micros(fast_replay, len(seen), 5 * ROUNDS)
-        worst = slowest(params, seen, scenario.step_ns)
-        record(f"control step, {name}, CPython", python, "us")
-        record(f"control step, {name}, compiled", fast, "us")
-        print(f"{name:24s}{python:10.1f}{fast:10.2f}{len(seen):10d}{worst:14.2f}")
+        cost = step_cost(library, scenario)
+        record(f"control step, {name}, CPython", cost.python, "us")
+        record(f"control step, {name}, compiled", cost.compiled, "us")
+        print(
+            f"{name:24s}{cost.python:10.1f}{cost.compiled:10.2f}{cost.count:10d}{cost.slowest:14.2f}",
+            flush=True,
+        )
 
 
-def replay(params: Any, seen: list[Any], step_ns: int) -> list[float]:
-    """Step the controller in CPython through the inputs it saw; return its last outputs."""
+def replay(params: Any, seen: list[Any], step_ns: int) -> tuple[list[float], list[float]]:
+    """Step the controller in CPython through the inputs it saw; return the times of the steps [s], the last outputs."""
     state, outputs = MODEL.initialize(params)
+    spent = []
     for inputs in seen:
+        begun = time.perf_counter()
         state, outputs = MODEL.step(state, inputs, params, step_ns)
-    return [float(value) for value in flatten(outputs)]
+        spent.append(time.perf_counter() - begun)
+    return spent, [float(value) for value in flatten(outputs)]
 
 
 def compiled() -> Any:
@@ -164,9 +179,8 @@ def bench_fuzzy(library: Any) -> None:
             simulation.input["row"], simulation.input["column"] = a, b
             simulation.compute()
 
-    machine = micros(lambda: library.bench_infer(array.ctypes.data, len(array)), 200, 5 * ROUNDS)
-    python = micros(ours, 200, 5 * ROUNDS)
-    other = micros(theirs, 200, 3)
+    works = {"C": lambda: library.bench_infer(array.ctypes.data, len(array)), "CPython": ours, "scikit-fuzzy": theirs}
+    machine, python, other = micros(works, dict.fromkeys(works, len(points))).values()
     print(f"\n{'fuzzy inference [us]':24s}{'CPython':>10s}{'compiled':>10s}{'scikit-fuzzy':>14s}")
     print(f"{'5 x 5 rules':24s}{python:10.1f}{machine:10.2f}{other:14.0f}   {other / python:.0f} times ours in CPython")
 
@@ -222,11 +236,12 @@ def bench_qp(library: Any) -> None:
             cvxpy.Problem(cvxpy.Minimize(cost), [g @ x <= limit]).solve(solver=cvxpy.OSQP, eps_abs=1e-6, eps_rel=1e-6)
 
     solvers = {"ours, CPython": ours, "DAQP": by_daqp, "OSQP, set-up and solve": by_osqp, "cvxpy + OSQP": by_cvxpy}
+    works = {"ours, compiled": by_c, **solvers}
+    counts = {name: len(problems) * (REPEATS if work is by_c else 1) for name, work in works.items()}
     print(f"\n{'QP of 12 steps [us]':24s}{'time':>10s}")
-    print(f"{'ours, compiled':24s}{micros(by_c, REPEATS * len(problems), 3):10.0f}")
-    for name, work in solvers.items():
-        cost = micros(work, len(problems), 3)
-        record(f"QP of 12 steps, {name}", cost, "us")
+    for name, cost in micros(works, counts).items():
+        if name in solvers:
+            record(f"QP of 12 steps, {name}", cost, "us")
         print(f"{name:24s}{cost:10.0f}")
 
 

@@ -9,11 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.results import record, size
+from benchmarks.rounds import in_turn
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.session.session import SimulationResult, run_scenario
+from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 
-ROUNDS = size(5, 1)
+MOST_ROUNDS = size(15, 1)
 
 
 def main() -> None:
@@ -21,21 +22,20 @@ def main() -> None:
     scenario = load_scenario("guo2015-case4")
     python, native = (fmu_files(kind, lambda text: None) for kind in ("python", "native"))
     folder = Path(tempfile.mkdtemp())
-    runs: dict[str, Callable[[], SimulationResult]] = {
-        "models in process": lambda: run_scenario(scenario),
-        "PythonFMUs": lambda: run_scenario(scenario, python, kind="python"),
-        "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=folder / "python.mcap"),
-        "native FMUs": lambda: run_scenario(scenario, native, kind="native"),
-        "native FMUs, log": lambda: run_scenario(scenario, native, kind="native", log=folder / "native.mcap"),
+    logs = {kind: folder / f"{kind}.mcap" for kind in ("python", "native")}
+    runs: dict[str, Callable[[], float]] = {
+        "models in process": lambda: run_scenario(scenario).wall_time,
+        "PythonFMUs": lambda: run_scenario(scenario, python, kind="python").wall_time,
+        "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=logs["python"]).wall_time,
+        "native FMUs": lambda: run_scenario(scenario, native, kind="native").wall_time,
+        "native FMUs, log": lambda: run_scenario(scenario, native, kind="native", log=logs["native"]).wall_time,
     }
-    times: dict[str, list[float]] = {name: [] for name in runs}
-    for _ in range(ROUNDS):
-        for name, run in runs.items():
-            ran = run()
-            times[name].append(ran.wall_time)
+    ran = run_scenario(scenario, native, kind="native")
     steps = len(ran.recording.t) - 1
+    times = in_turn(runs, MOST_ROUNDS)
     median = {name: statistics.median(values) for name, values in times.items()}
-    print(f"case 4: {steps} communication steps of {scenario.step * 1e3:g} ms, medians of {ROUNDS} runs")
+    rounds = len(times["native FMUs"])
+    print(f"case 4: {steps} communication steps of {scenario.step * 1e3:g} ms, medians of {rounds} runs")
     for name, wall in median.items():
         factor = ran.recording.t[-1] / wall
         record(f"one step, {name}", wall / steps * 1e6, "us")

@@ -16,6 +16,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 
 from benchmarks.results import record, size
+from benchmarks.rounds import in_turn
 from fmus.compiled_batch import compile_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
@@ -29,10 +30,9 @@ from orchestrator.simulation.cosim.compiled_master import CompiledMaster
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.local_instance import LocalInstance
 
-ROUNDS = size(7, 1)
+MOST_ROUNDS = size(15, 1)
 STEPS = size(2000, 50)
 PAIRS = size(60, 1)
-WHOLE_RUNS = size(5, 1)
 Files = dict[str, Path]
 Loop = Callable[[], float]
 """Drives STEPS steps and returns the seconds they took, without loading and initializing."""
@@ -103,14 +103,11 @@ def main() -> None:
         "native, compiled master": master_loop(CompiledMaster, native, scenario),
         "limit: no FMI at all": in_process_loop(scenario),
     }
-    times: dict[str, list[float]] = {name: [] for name in loops}
-    for _ in range(ROUNDS):
-        for name, loop in loops.items():
-            times[name].append(loop())
+    times = in_turn(loops, MOST_ROUNDS)
     median = {name: statistics.median(values) / STEPS * 1e6 for name, values in times.items()}
     least = {name: min(values) / STEPS * 1e6 for name, values in times.items()}
     ours = median["native, compiled master"]
-    print(f"one step of the pair, {STEPS} steps, median (and least) of {ROUNDS} rounds")
+    print(f"one step of the pair, {STEPS} steps, median (and least) of {len(times['native, libcosim'])} rounds")
     for name, cost in median.items():
         record(f"one step, {name}", cost, "us")
         print(f"  {name:30} {cost:8.2f} us ({least[name]:8.2f})  {cost / ours:8.2f} times the compiled master")
@@ -137,15 +134,16 @@ def master_to_limit(scenario: Scenario, native: Files) -> None:
 def whole_runs(scenario: Scenario, python: Files, native: Files, folder: Path) -> None:
     """Print wall times of case 4 to its end, recorded, without and with the log."""
     kinds = {"python": python, "native": native}
-    walls: dict[tuple[str, bool], list[float]] = {(kind, log): [] for log in (False, True) for kind in kinds}
-    for _ in range(WHOLE_RUNS):
-        for kind, log in walls:
-            path = folder / f"{kind}.mcap" if log else None
-            walls[kind, log].append(run_scenario(scenario, kinds[kind], kind=kind, log=path).wall_time)
-    print(f"case 4 to its end, recorded; medians of {WHOLE_RUNS}")
-    for log in (False, True):
-        one, other = (statistics.median(walls[kind, log]) * 1e3 for kind in ("python", "native"))
-        what = "with the log" if log else "without log"
+
+    def run(kind: str, is_logged: bool) -> Loop:
+        path = folder / f"{kind}.mcap" if is_logged else None
+        return lambda: run_scenario(scenario, kinds[kind], kind=kind, log=path).wall_time
+
+    asked = {"without log": False, "with the log": True}
+    walls = in_turn({f"{kind} {what}": run(kind, log) for what, log in asked.items() for kind in kinds}, MOST_ROUNDS)
+    print(f"case 4 to its end, recorded; medians of {len(walls['native with the log'])}")
+    for what in asked:
+        one, other = (statistics.median(walls[f"{kind} {what}"]) * 1e3 for kind in kinds)
         record(f"case 4 to its end, PythonFMUs, {what}", one, "ms")
         record(f"case 4 to its end, native FMUs, {what}", other, "ms")
         print(f"  {what:14} PythonFMUs {one:7.1f} ms   native {other:7.1f} ms   {one / other:5.1f} times faster")

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.results import record, size
+from benchmarks.rounds import in_turn
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
@@ -33,7 +34,7 @@ from orchestrator.studies.sweep.study.study_file import StudyFile
 from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM
 from orchestrator.studies.sweep.sweep import Options, sweep
 
-REPEATS = size(5, 1)
+MOST_ROUNDS = size(9, 1)
 MANOEUVRES = size(2000, 20)
 SIZES = size((1_000, 10_000, 100_000), (20,))
 PLAIN, DISTURBED = "guo2015-case4", "apa-parallel-real"
@@ -55,15 +56,18 @@ def bound(count: int, scenario: str = PLAIN, **changes: Any) -> tuple[Any, Chunk
     return make_job(chosen), Chunk(0, 0, chosen.design.values, chosen.design.seeds)
 
 
-def measured(work: Callable[[], object], repeats: int = REPEATS) -> tuple[float, float]:
+def measured(work: Callable[[], object]) -> tuple[float, float]:
     """Return the medians of (wall, processor) time [s]."""
-    walls, processors = [], []
-    for _ in range(repeats):
+    walls = []
+
+    def once() -> float:
         wall, processor = time.perf_counter(), time.process_time()
         work()
         walls.append(time.perf_counter() - wall)
-        processors.append(time.process_time() - processor)
-    return statistics.median(walls), statistics.median(processors)
+        return time.process_time() - processor
+
+    processors = in_turn({"work": once}, MOST_ROUNDS)["work"]
+    return statistics.median(walls[-len(processors) :]), statistics.median(processors)
 
 
 class Prepared(NamedTuple):
@@ -105,7 +109,7 @@ def rates() -> None:
     for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, max(2, MANOEUVRES // DISTURBED_SHARE))):
         for name, has_own_code in (("complete", False), ("study code", True)):
             runs = prepare(scenario, count, has_own_code)
-            found = [measured(lambda n=n, runs=runs: runs.run(n), REPEATS) for n in threads]
+            found = [measured(lambda n=n, runs=runs: runs.run(n)) for n in threads]
             label = f"{scenario}, {name}"
             for number, (wall, _) in zip(threads, found, strict=True):
                 record(f"{label}, {number} threads", count / wall, "1/s")
@@ -120,7 +124,7 @@ def rates() -> None:
     case4 = load_scenario(PLAIN)
     for kind in ("python", "native"):
         files = fmu_files(kind)
-        alone, burnt = measured(lambda files=files, kind=kind: run_scenario(case4, files, kind=kind), 3)
+        alone, burnt = measured(lambda files=files, kind=kind: run_scenario(case4, files, kind=kind))
         record(f"case-4 manoeuvre, {kind} FMUs, processor time", 1e3 * burnt, "ms")
         print(f"{kind:6} FMUs, one process   {1.0 / alone:8.1f} a second, {1e3 * burnt:.0f} ms of processor each; "
               f"the batch needs {burnt * MANOEUVRES / processor:.0f} times less")  # fmt: skip

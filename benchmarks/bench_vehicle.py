@@ -10,6 +10,7 @@ import ctypes
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +21,12 @@ from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
 from benchmarks.results import record, size
+from benchmarks.rounds import in_turn, timed
 from fmus.native.libraries import model_files
 from fmus.native.library_cache import cache_library
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from vehicle_fmu import MODEL
@@ -34,7 +37,7 @@ from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState,
 from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
 
-ROUNDS = size(7, 1)
+MOST_ROUNDS = size(30, 1)
 WHEELBASE = 2.405
 HELD = KinematicInput(1.0, 0.2)
 MOVING = Motion(Pose(), 1.0, 0.0, 0.0)
@@ -111,17 +114,10 @@ def vehicles(library: Any, n: int) -> Rounds:
 
 def medians(groups: dict[str, Rounds]) -> dict[str, float]:
     """Return label -> microseconds a step, every round in turn."""
-    times: dict[str, list[float]] = {}
-    for rounds in groups.values():
-        for n, run in rounds.values():
-            run(n)
-    for _ in range(ROUNDS):
-        for group, rounds in groups.items():
-            for name, (n, run) in rounds.items():
-                before = time.thread_time()
-                run(n)
-                times.setdefault(f"{group} {name}", []).append((time.thread_time() - before) / n * 1e6)
-    return {label: statistics.median(values) for label, values in times.items()}
+    every = {f"{group} {name}": run for group, rounds in groups.items() for name, run in rounds.items()}
+    works = {label: timed(partial(run, n), time.thread_time) for label, (n, run) in every.items()}
+    times = in_turn(works, MOST_ROUNDS)
+    return {label: statistics.median(times[label]) / n * 1e6 for label, (n, _) in every.items()}
 
 
 def native_factors() -> dict[str, float]:
@@ -130,15 +126,14 @@ def native_factors() -> dict[str, float]:
     The whole pair runs under the compiled master, every signal recorded, no log.
     """
     files = fmu_files("native")
-    factors = {}
-    for name in NAMES:
-        times = []
-        for _ in range(ROUNDS):
-            scenario = load_scenario("guo2015-case4", [f"vehicle.body={name}"])
-            ran = run_scenario(scenario, files, kind="native")
-            times.append(float(ran.recording.t[-1]) / ran.wall_time)
-        factors[name] = statistics.median(times)
-    return factors
+    cases = {name: load_scenario("guo2015-case4", [f"vehicle.body={name}"]) for name in NAMES}
+    ends = {name: float(run_scenario(case, files, kind="native").recording.t[-1]) for name, case in cases.items()}
+    runs = {name: partial(_wall_time, case, files) for name, case in cases.items()}
+    return {name: ends[name] / statistics.median(times) for name, times in in_turn(runs, MOST_ROUNDS).items()}
+
+
+def _wall_time(case: Scenario, files: dict[str, Path]) -> float:
+    return run_scenario(case, files, kind="native").wall_time
 
 
 def main() -> None:

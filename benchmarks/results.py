@@ -8,6 +8,7 @@ import json
 import os
 import platform
 import subprocess
+import time
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -19,6 +20,9 @@ SIZE, MEASUREMENTS = "BENCHMARK_SIZE", "BENCHMARK_MEASUREMENTS"
 SMALLEST = "smallest"
 PROCESSOR_TIME = "processor time"
 """What the name of a quantity says that other programs do not change much."""
+STAT = Path("/proc/stat")
+LEAST_IDLE = 0.9
+"""Share of the processors' time that others must leave."""
 SKIPPED = 77
 """Exit code of a benchmark that needs what is not here, as of automake's tests."""
 
@@ -57,14 +61,33 @@ def machine() -> str:
 
 
 def commit() -> str:
-    """Return the short name of the commit, with ``+`` if files were changed since; empty outside a clone."""
-    command = ["git", "describe", "--always", "--abbrev=9", "--exclude=*", "--dirty=+"]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
+    """Return the short name of the commit, with ``+`` if files but the table were changed; empty outside a clone."""
+    name = _git("describe", "--always", "--abbrev=9", "--exclude=*")
+    table = f":!{FILE.relative_to(ROOT)}"
+    return name + "+" if name and _git("status", "--porcelain", "--untracked-files=no", "--", ".", table) else name
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
 
 
 def is_idle() -> bool:
-    """Return whether fewer processes want to run than there are cores, so that wall times mean something."""
-    return not hasattr(os, "getloadavg") or os.getloadavg()[0] < (os.cpu_count() or 1)
+    """Return whether other programs leave the processors free for a second, so that wall times mean something.
+
+    The load average would still have the benchmark before this one in it; it counts where there is no ``/proc/stat``.
+    """
+    if not STAT.exists():
+        return not hasattr(os, "getloadavg") or os.getloadavg()[0] < (os.cpu_count() or 1)
+    before = _processor_ticks()
+    time.sleep(1.0)
+    idle, every = (late - early for late, early in zip(_processor_ticks(), before, strict=True))
+    return idle >= LEAST_IDLE * every
+
+
+def _processor_ticks() -> tuple[int, int]:
+    """Return the ticks of all processors without work, and all their ticks."""
+    ticks = [int(word) for word in STAT.read_text(encoding="ascii").split("\n", 1)[0].split()[1:9]]
+    return ticks[3] + ticks[4], sum(ticks)
 
 
 def read_measurements(file: Path, benchmark: str, where: str) -> list[Measurement]:

@@ -3,14 +3,17 @@
 import ast
 import importlib
 import importlib.util
+import itertools
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from benchmarks.__main__ import main
+from benchmarks.__main__ import main, measured
 from benchmarks.results import Measurement, lasting, read_table, write_table
+from benchmarks.rounds import in_turn
 from modelkit.variables import flatten
 
 BENCHMARKS = sorted(file.stem.removeprefix("bench_") for file in Path("benchmarks").glob("bench_*.py"))
@@ -103,3 +106,37 @@ def test_a_busy_machine_gives_processor_times_only() -> None:
     processor = wall._replace(quantity="one step, processor time")
     assert lasting([wall, processor], was_idle=True) == [wall, processor]
     assert lasting([wall, processor], was_idle=False) == [processor]
+
+
+def test_rounds_end_when_the_medians_are_known() -> None:
+    calls: list[str] = []
+
+    def work(name: str, values: list[float]) -> Callable[[], float]:
+        each = itertools.cycle(values)
+
+        def once() -> float:
+            calls.append(name)
+            return next(each)
+
+        return once
+
+    found = in_turn({"a": work("a", [1.0, 1.001]), "b": work("b", [2.0])}, 30)
+    assert list(map(len, found.values())) == [3, 3]
+    assert calls == ["a", "b"] * 4, "in turn, the first round does not count"
+    assert len(in_turn({"a": work("a", [1.0, 2.0])}, 9)["a"]) == 9
+    assert in_turn({"a": work("a", [1.0])}, 9, budget=0.0)["a"] == [1.0], "one round, whatever it takes"
+    assert in_turn({"a": work("a", [1.0])}, 1)["a"] == [1.0]
+
+
+def test_what_the_table_has_of_this_commit_is_not_measured_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    row = Measurement("step", "one step", "2", "us", "x86_64, 2 cores", "2026-11-26", "abc")
+    file = tmp_path / "table.tsv"
+    write_table([row, row._replace(benchmark="gym", commit="old"), row._replace(benchmark="live", commit="abc+")], file)
+    monkeypatch.setattr("benchmarks.__main__.commit", lambda: "abc")
+    assert measured(file) == {"step"}
+    assert main(["step", "--resume", "--table", str(file)]) == 0
+    assert "== step" not in capfd.readouterr().out
+    monkeypatch.setattr("benchmarks.__main__.commit", lambda: "abc+")
+    assert measured(file) == set(), "of changed files the table says nothing"

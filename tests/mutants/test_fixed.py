@@ -24,6 +24,16 @@ def test_each_mistake_is_in_the_code() -> None:
     assert not gone, f"tests/mutants/fixed.tsv: not in the code any more: {gone}"
 
 
+def test_each_test_of_the_list_is_there() -> None:
+    tests = {row.test for row in read_table()}
+    gone = [test for test in tests if f"def {test.split('::')[1]}(" not in text_of(test.split("::")[0])]
+    assert not gone, f"tests/mutants/fixed.tsv: no such test: {gone}"
+
+
+def text_of(file: str) -> str:
+    return (ROOT / "tests" / file).read_text(encoding="utf-8")
+
+
 def test_a_mistake_that_is_not_in_the_code_is_not_located() -> None:
     assert located(ROW) is not None
     assert located(ROW._replace(count=9)) is None

@@ -93,13 +93,13 @@ def test_only_the_entries_are_external(translations: Any) -> None:
 
 def test_text_is_the_same_for_any_hash_seed(translations: Any) -> None:
     program = (
-        "import hashlib, controller_fmu; from fmus.compiler import translate; t = translate(controller_fmu.MODEL);"
+        "import hashlib, vehicle_fmu; from fmus.compiler import translate; t = translate(vehicle_fmu.MODEL);"
         "print(hashlib.sha256((t.header + t.source).encode()).hexdigest())"
     )
     seed = "0" if os.environ.get("PYTHONHASHSEED") != "0" else "4711"
     environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(sys.path)}
     other = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
-    here = translations[list(MODELS).index("controller")]
+    here = translations[list(MODELS).index("vehicle")]
     assert other.stdout.strip() == hashlib.sha256((here.header + here.source).encode()).hexdigest()
 
 

@@ -31,7 +31,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.fixture(scope="module")
 def case4(log: Any) -> Any:
-    return apa.run("guo2015-case4", fmus="none", log=log)
+    return apa.run("guo2015-case4", fmus="native", log=log)
 
 
 def bare(function: Any) -> str:
@@ -111,7 +111,7 @@ def test_a_run_is_judged_by_shipped_sets_and_files(case4: Any, tmp_path: Path) -
 
 
 def test_two_runs_are_compared(case4: Any) -> None:
-    other = apa.run("guo2015-case4", {"controller.guo2015.k4": 3.0}, fmus="none")
+    other = apa.run("guo2015-case4", {"controller.guo2015.k4": 3.0}, fmus="native")
     assert apa.compare(case4, case4).passed
     found = apa.compare(case4, other, absolute=1e-6, signals=["vehicle.pose.*"])
     assert not found.passed

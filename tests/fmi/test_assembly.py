@@ -8,8 +8,12 @@ import toy_model
 
 from fmus.contents.fmu_documentation import in_python
 from fmus.contents.variables import visible_variables
+from fmus.native.compilers import can_compile
 from fmus.native.libraries import in_c
 from modelkit.assembly import assemble
+from tests.fmi.built import native_fmu_of
+from tests.fmi.fmpy_check import problems_of
+from tests.fmi.host import OK, Host
 
 STEPS = [3_000_000, 7_000_000, 17_000_000, 50_000_000] * 5
 HERE = sys.modules[__name__]
@@ -23,6 +27,23 @@ def test_models_that_do_not_feed_each_other_and_one_with_work_arrays() -> None:
     rows = list(in_c(model, STEPS))
     assert rows == [[float(value) for value in row] for row in in_python(model, STEPS)]
     assert rows[-1] != rows[0]
+
+
+@pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
+def test_their_fmu_is_valid_takes_parameters_and_continues_from_a_saved_state() -> None:
+    path = native_fmu_of(assemble("Both", "two", HERE, {"a": toy_model.MODEL, "b": store_model.MODEL}, 10_000_000))
+    assert problems_of(path) == []
+    with Host(path) as host, Host(path) as other, Host(path) as stiff:
+        host.initialize()
+        stiff.initialize(**{"a.stiffness": 7.0})
+        for k in range(20):
+            assert host.step(k * 0.007, 0.007) == stiff.step(k * 0.007, 0.007) == OK
+        assert host.outputs() != stiff.outputs()
+        content = host.fmu.serializeFMUstate(host.fmu.getFMUstate())
+        other.fmu.setFMUstate(other.fmu.deSerializeFMUstate(content))
+        for k in range(20, 40):
+            assert host.step(k * 0.007, 0.007) == other.step(k * 0.007, 0.007) == OK
+        assert host.outputs() == other.outputs()
 
 
 def test_two_models_with_work_arrays_are_refused() -> None:

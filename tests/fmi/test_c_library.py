@@ -52,7 +52,7 @@ def test_the_example_prints_cpythons_numbers(model: Any, tmp_path: Path) -> None
     assert len(rows) > 10
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.release)])
 def test_the_library_equals_the_model_to_the_bit(model: Any, seed: int) -> None:
     given = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, given, STEPS)

@@ -49,7 +49,7 @@ def grouped(names: Any, values: Any) -> Any:
     return found
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.release)])
 def test_equals_the_model_in_process_to_the_bit(fmi3_fmus: Any, model: Any, seed: int, tmp_path: Path) -> None:
     inputs = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, inputs, STEPS)

@@ -59,7 +59,7 @@ def test_an_interrupt_that_strikes_before_the_first_line_does_no_harm(python_fmu
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt
 
-    for _ in range(5):
+    for _ in range(2):
         with Host(python_fmus["Toy"]) as host:
             host.initialize()
             slaves(host)[-1].do_step = interrupted

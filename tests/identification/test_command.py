@@ -116,7 +116,7 @@ def test_logs_of_all_kinds_are_the_same_drive(
 
 def test_the_log_of_a_run_needs_no_columns(tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert main(["run", "guo2015-case4", "--out", str(run), "--no-page", "--fmus", "none"]) == 0
+    assert main(["run", "guo2015-case4", "--out", str(run), "--no-page", "--fmus", "native"]) == 0
     drive = read_drive(run / "run.mcap", Columns())
     assert {"pose.x", "odometry.heading", "speed"} <= drive.compared.keys()
     assert set(drive.followed) == {"measured_speed"}

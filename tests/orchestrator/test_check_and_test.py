@@ -25,7 +25,7 @@ RULES = """
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     out = tmp_path_factory.mktemp("case4")
-    main(["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(out)])
+    main(["run", "guo2015-case4", "--fmus", "native", "--no-page", "--out", str(out)])
     return out / "run.mcap"
 
 
@@ -86,7 +86,7 @@ def test_patterns_choose_shipped_scenarios() -> None:
 def test_test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     names = ["guo2015-case4", "guo2015-case2", "fault-pose-nan"]
-    assert main(["test", *names, "--fmus", "none", "--out", str(out)]) == 0
+    assert main(["test", *names, "--fmus", "native", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "pass  guo2015-case2  (2 of 3)" in printed
     assert "3 of 3 scenarios passed" in printed
@@ -106,7 +106,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
     tmp_path: Path, rules: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    arguments = ["test", "guo2015-case4", "--fmus", "none", "--out", str(out), "--json"]
+    arguments = ["test", "guo2015-case4", "--fmus", "native", "--out", str(out), "--json"]
     rules.write_text("- {id: quick, signal: duration, max: 10 s, source: us}")
     assert main([*arguments, "--requirements", str(rules)]) == 1
     found = json.loads(capsys.readouterr().out)
@@ -120,7 +120,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
 def test_titles_of_scenarios_are_escaped_on_the_page(tmp_path: Path) -> None:
     out = tmp_path / "out"
     title = "title=<script>alert(1)</script>"
-    assert main(["test", "guo2015-case4", "--fmus", "none", "--out", str(out), "--set", title]) == 0
+    assert main(["test", "guo2015-case4", "--fmus", "native", "--out", str(out), "--set", title]) == 0
     assert "<script" not in (out / "index.html").read_text()
 
 
@@ -153,7 +153,7 @@ def test_names_of_cases_are_unique_and_tell_the_source(tmp_path: Path, rules: An
         "- {id: quick, signal: duration, max: 50 s, source: us}\n- {id: quick, signal: duration, max: 60 s, source: us}"
     )
     out = tmp_path / "out"
-    arguments = ["--fmus", "none", "--out", str(out), "--requirements", str(rules), "--requirements", "gbt41630"]
+    arguments = ["--fmus", "native", "--out", str(out), "--requirements", str(rules), "--requirements", "gbt41630"]
     assert main(["test", "guo2015-case4", *arguments]) == 0
     names = [case.get("name") for case in ElementTree.parse(out / "junit.xml").iter("testcase")]
     assert len(names) == len(set(names)) == 19
@@ -170,7 +170,7 @@ def test_a_window_that_never_comes_is_said_in_words(
     tmp_path: Path, rules: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rules.write_text("- {id: crawl, signal: vehicle.speed, max_abs: 2 km/h, window: {phase: TO_Q4}, source: us}")
-    arguments = ["--fmus", "none", "--out", str(tmp_path / "out"), "--requirements", str(rules)]
+    arguments = ["--fmus", "native", "--out", str(tmp_path / "out"), "--requirements", str(rules)]
     assert main(["test", "guo2015-case4", *arguments]) == 1
     printed = capsys.readouterr().out
     assert "vehicle.speed: the window never comes, required" in printed

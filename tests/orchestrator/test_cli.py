@@ -27,7 +27,7 @@ PNG = b"\x89PNG\r\n"
 
 def test_a_parked_run_writes_log_figure_and_summary(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "räum 1"
-    assert main(["run", DEMO, "--fmus", "none", "--out", str(out), "--json"]) == 0
+    assert main(["run", DEMO, "--fmus", "native", "--out", str(out), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((out / "summary.json").read_text(encoding="utf-8"))
     assert printed["outcome"] == "parked"
@@ -191,7 +191,9 @@ def test_an_instance_that_does_not_start_aborts_too(
     assert len(read_log(tmp_path / "run.mcap").t_ns) == 0
 
 
-@pytest.mark.parametrize("arguments", [["run", DEMO, "--fmus", "none"], ["test", "guo2015-case4", "--fmus", "none"]])
+@pytest.mark.parametrize(
+    "arguments", [["run", DEMO, "--fmus", "native"], ["test", "guo2015-case4", "--fmus", "native"]]
+)
 @pytest.mark.parametrize("place", ["/proc/x", "FILE/x"])
 def test_a_place_that_cannot_be_written_is_one_line(
     arguments: list[str], place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -338,7 +340,7 @@ def test_completion_in_other_shells(shell: str, tmp_path: Path, capsys: pytest.C
 
 def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sets = ["--set", "controller.guo2015.k4=3", "--set", "title=A <b>title</b>"]
-    arguments = ["guo2015-case4", "--fmus", "none", *sets, "--out"]
+    arguments = ["guo2015-case4", "--fmus", "native", *sets, "--out"]
     assert main(["run", *arguments, str(tmp_path / "run")]) == 0
     assert "overrides: controller.guo2015.k4 = 3\n" in capsys.readouterr().out
     summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
@@ -360,7 +362,7 @@ def test_a_scenario_file_cannot_say_what_was_changed(tmp_path: Path, capsys: pyt
 
 def test_the_folder_of_a_run_will_do_for_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "run"
-    assert main(["run", DEMO, "--fmus", "none", "--out", str(folder), "--no-page"]) == 0
+    assert main(["run", DEMO, "--fmus", "native", "--out", str(folder), "--no-page"]) == 0
     assert not (folder / "report.html").exists()
     assert main(["report", str(folder)]) == 0
     assert (folder / "report.html").is_file()

@@ -190,7 +190,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ("a", "same", "other")
     sets: tuple[list[str], ...] = ([], [], ["--set", "controller.guo2015.k4=3"])
     for name, changes in zip(names, sets, strict=True):
-        main(["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(tmp_path / name), *changes])
+        main(["run", "guo2015-case4", "--fmus", "native", "--no-page", "--out", str(tmp_path / name), *changes])
     a, same, other = (str(tmp_path / name / "run.mcap") for name in names)
     capsys.readouterr()
     assert main(["compare", a, same, "--abs", "0", "--rel", "0"]) == 0

@@ -94,7 +94,7 @@ def test_a_requirement_of_the_same_name_or_metric_does_not_take_its_place() -> N
 
 
 def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys: Any) -> None:
-    words = ["--fmus", "none", "--no-page", "--set", f"scene.boxes=[{BOX}]"]
+    words = ["--fmus", "native", "--no-page", "--set", f"scene.boxes=[{BOX}]"]
     words += ["--set", "requirements=[project]"]
     assert main(["run", "guo2015-case4", *words, "--out", str(tmp_path / "a")]) == 1
     capsys.readouterr()
@@ -105,7 +105,7 @@ def test_only_the_key_allows_it_and_the_table_shows_that(tmp_path: Path, capsys:
 
 
 def test_check_test_and_judge_miss_it(tmp_path: Path, capsys: Any) -> None:
-    words = ["--fmus", "none", "--set", f"scene.boxes=[{BOX}]"]
+    words = ["--fmus", "native", "--set", f"scene.boxes=[{BOX}]"]
     assert main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "t"), "--set", "requirements=[]"]) == 1
     assert (
         main(["test", "guo2015-case4", *words, "--out", str(tmp_path / "u"), "--set", "expected_outcome=not_parked"])

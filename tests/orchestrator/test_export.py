@@ -21,7 +21,7 @@ from orchestrator.presentation.log.read_log import read_log
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     out = tmp_path_factory.mktemp("case4")
-    main(["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(out)])
+    main(["run", "guo2015-case4", "--fmus", "native", "--no-page", "--out", str(out)])
     return out / "run.mcap"
 
 

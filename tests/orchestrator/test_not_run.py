@@ -89,10 +89,10 @@ def test_a_sweep_says_so_and_resume_makes_these_runs(
     study: Path, tmp_path: Path, monkeypatch: Any, capsys: Any, cause: Exception
 ) -> None:
     words = ["sweep", str(study), "--no-page", "--chunk", "1", "--jobs", "1"]
-    assert main([*words, "--fmus", "none", "--out", str(tmp_path / "whole")]) == 0
+    assert main([*words, "--fmus", "native", "--out", str(tmp_path / "whole")]) == 0
     in_threads(monkeypatch, Failing(run_scenario, cause, {2, 3}))
     capsys.readouterr()
-    out = ["--fmus", "none", "--out", str(tmp_path / "part")]
+    out = ["--fmus", "native", "--out", str(tmp_path / "part")]
     assert main([*words, *out]) == 2
     said = capsys.readouterr().err
     assert "few: 2 runs could not take place: " in said

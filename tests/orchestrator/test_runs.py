@@ -22,7 +22,7 @@ SHORT = ["run", DEMO, "--fmus", "none", "--no-page", "--set", "stop_time=0.2"]
 
 
 def test_a_run_is_replaced_only_if_that_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["run", DEMO, "--fmus", "none", "--no-page", "--out", str(tmp_path / "run")]
+    arguments = ["run", DEMO, "--fmus", "native", "--no-page", "--out", str(tmp_path / "run")]
     assert main(arguments) == 0
     first = (tmp_path / "run" / "run.mcap").read_bytes()
     assert main(["export", "csv", str(tmp_path / "run")]) == 0

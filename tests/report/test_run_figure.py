@@ -12,7 +12,7 @@ from orchestrator.studies.papers.drive import drive
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("figure") / "case2"
-    assert main(["run", "guo2015-case2", "--fmus", "none", "--out", str(folder)]) in (0, 1)
+    assert main(["run", "guo2015-case2", "--fmus", "native", "--out", str(folder)]) in (0, 1)
     return folder
 
 

@@ -24,11 +24,11 @@ scenario: guo2015-case4
 runs:
   grid: {controller.system: [ntbpt, ntbptcwpt]}
   latin_hypercube:
-    n: 300
+    n: 100
     "vehicle.driver.profile[1].speed": {uniform: [2 km/h, 2.0]}
     vehicle.start.y: {uniform: [-10 cm, 10 cm]}
 """
-COUNT = 600
+COUNT = 200
 CHUNK = 10
 
 
@@ -81,7 +81,7 @@ def small(study: Any, tmp_path: Path) -> Any:
     """A study of four runs."""
     path = tmp_path / "small" / "trial.yaml"
     path.parent.mkdir()
-    path.write_text(study.read_text().replace("n: 300", "n: 2"))
+    path.write_text(study.read_text().replace("n: 100", "n: 2"))
     return path
 
 
@@ -125,7 +125,7 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
 
 
 def test_a_study_may_be_finished_by_another_engine(small: Any, tmp_path: Path) -> None:
-    common = ["sweep", str(small), "--no-page", "--chunk", "2", "--out"]
+    common = ["sweep", str(small), "--no-page", "--chunk", "2", "--set", "stop_time=8", "--out"]
     assert main([*common, str(tmp_path / "batch")]) == 0
     assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0
     tables = [(tmp_path / kind / "trial.parquet").read_bytes() for kind in ("batch", "fmus")]
@@ -146,7 +146,7 @@ def test_rows_come_in_order_with_units_and_study(whole: Any) -> None:
 def test_any_row_can_be_replayed_with_the_same_bits(
     whole: Any, some: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for number in some(COUNT, 4, seed=12):
+    for number in some(COUNT, 2, seed=12):
         out = tmp_path / str(number)
         code = main(["replay", str(whole), "--row", str(number), "--out", str(out), "--no-page"])
         assert "same bits as in the table" in capsys.readouterr().out
@@ -155,7 +155,7 @@ def test_any_row_can_be_replayed_with_the_same_bits(
 
 
 def test_a_row_can_be_replayed_on_fmus(whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["replay", str(whole), "--row", "350", "--out", str(tmp_path), "--no-page", "--fmus", "python"])
+    main(["replay", str(whole), "--row", "150", "--out", str(tmp_path), "--no-page", "--fmus", "python"])
     assert "same bits as in the table" in capsys.readouterr().out
 
 

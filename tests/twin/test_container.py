@@ -40,7 +40,8 @@ MORE_SCENARIOS = (
 )
 CASE = load_scenario("guo2015-case4-105", [])
 COMPILES = pytest.mark.release
-"""Compiles a second container; ``tests/fmi/test_fmi3_fmu.py`` has the calls, ``test_same_bits`` the bits of FMI 3.0."""
+"""Compiles a container: ``tests/fmi/test_assembly.py`` has the FMU of two small models, ``tests/fmi/test_fmi3_fmu.py``
+the calls, ``pair`` the bits of the models."""
 STEP = 10_000_000
 FIRST_NS = 21_000_000_000
 """Simulated time that is compared at several communication steps: a whole number of each."""
@@ -110,7 +111,7 @@ def test_its_exchanges_are_exact_at_any_communication_step(name: Any, millisecon
     ] == []
 
 
-@pytest.mark.release  # the container of a pair, above, is the same code
+@COMPILES
 def test_the_container_of_fmi_2_gives_them(recording: Any) -> None:
     model = one_model(CASE)
     order = [item.name for item in variables(model.outputs) if model.shows(item.name)]
@@ -162,6 +163,7 @@ def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length(driver_change
     assert state.to_exchange_ns == STEP - sum(ODD) % STEP
 
 
+@COMPILES
 def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits() -> None:
     with Host(container()) as host, Host(container()) as other:
         host.initialize()
@@ -177,7 +179,8 @@ def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits() -> Non
 # What an importer sees
 
 
-@pytest.mark.parametrize("fmi", [2, pytest.param(3, marks=COMPILES)])
+@COMPILES
+@pytest.mark.parametrize("fmi", [2, 3])
 def test_checkers_find_nothing(fmi: int) -> None:
     assert problems_of(container(fmi)) == []
     command = [str(Path(sys.executable).parent / "fmutool"), "-input", str(container(fmi)), "-check"]
@@ -185,6 +188,7 @@ def test_checkers_find_nothing(fmi: int) -> None:
     assert "ERROR" not in done.stdout + done.stderr
 
 
+@COMPILES
 def test_it_has_units_licence_parameters_and_its_own_reference_result(recording: Any, tmp_path: Path) -> None:
     description = fmpy.read_model_description(str(container()))
     known = {v.name: v for v in description.modelVariables}
@@ -217,6 +221,7 @@ def test_initial_dependencies_are_those_of_the_parts() -> None:
     assert found.keys() == {item.name for item in visible_variables(model) if item.initial == "calculated"}
 
 
+@COMPILES
 def test_a_parameter_changes_what_it_changes_in_the_pair() -> None:
     with Host(container()) as host, Host(container()) as other:
         host.initialize()
@@ -242,7 +247,7 @@ def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
         one_model(CASE, None, ["vehicle.promt"], None)
 
 
-@pytest.mark.release  # compiles a container of its own
+@COMPILES
 def test_an_input_left_open_is_what_the_tool_says(tmp_path: Path) -> None:
     out = tmp_path / "open.fmu"
     assert main(["export", "container", CASE.name, "--input", "vehicle.prompt", "--out", str(out)]) == 0

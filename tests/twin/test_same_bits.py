@@ -45,8 +45,8 @@ SCENARIOS = [
     if load_scenario(name, []).models == MODELS
 ]
 """Those of a controller apart have their own: tests/planning."""
-PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
-"""The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""
+PYTHON_FMU_TOO = ("fault-pose-nan", "fault-driver-takes-over", "guo2015-case4", "guo2015-case4-105")
+"""The PythonFMU runs the very functions that run in process, so a few scenarios are enough; on each change two."""
 SLOW = 2.0
 """The fuzzy law takes CPython a minute for a drive: there it is compared over this time [s], the others over all."""
 WHOLE = "preview-camera"
@@ -112,7 +112,9 @@ def test_every_target_equals_the_models_in_process(fmus: Any, targets: Any, name
     assert [item for item, one, other in pairs if not same(one, other)] == []
 
 
-@pytest.mark.parametrize("name", PYTHON_FMU_TOO)
+@pytest.mark.parametrize(
+    "name", [*PYTHON_FMU_TOO[:2], *(pytest.param(name, marks=pytest.mark.release) for name in PYTHON_FMU_TOO[2:])]
+)
 def test_native_fmus_equal_python_fmus(fmus: Any, name: Any) -> None:
     scenario = load_scenario(name, [])
     expected = run_scenario(scenario, fmus["python"], kind="python")

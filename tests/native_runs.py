@@ -1,13 +1,20 @@
-"""Runs of shipped scenarios that tests look at and do not change: native FMUs, a tenth of the time of CPython."""
+"""Shipped scenarios, and runs of them that tests look at and do not change: native FMUs, a tenth of CPython's time."""
 
 from functools import cache
 
 import pytest
 
-from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.simulation.cosim.recording import Recording
+
+
+@cache
+def shipped_scenarios() -> dict[str, Scenario]:
+    """Return name -> shipped scenario, read once in this process."""
+    return {name: load_scenario(name) for name in scenario_names()}
 
 
 @cache

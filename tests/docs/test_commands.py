@@ -48,8 +48,9 @@ NOT_RUN = {
 }
 """How a command begins that is not run here -> why."""
 LONG_PAGES = (
-    *("catalogue", "index", "parking", "parking-planning", "parking-results", "parking-use", "see-and-drive"),
-    *("parking-benchmarks", "studies", "targets", "third-party-fmus", "use-in-your-tool", "vehicle", "write-a-model"),
+    *("catalogue", "index", "learn-to-park", "parking", "parking-planning", "parking-results", "parking-use"),
+    *("parking-benchmarks", "see-and-drive", "studies", "targets", "test-in-ci", "third-party-fmus"),
+    *("use-in-your-tool", "vehicle", "write-a-model"),
 )
 """Pages whose commands drive, sweep and compile for minutes what tests of the command drive in small. On each change
 the words of their commands are checked, `make release` runs them."""

@@ -12,14 +12,17 @@ import pytest
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
 from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import models_for
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.algorithm import last_exchange
 from orchestrator.simulation.cosim.fmu_files import fmu_files
-from orchestrator.studies.live.situation import page_scenarios
+from orchestrator.studies.live.situation import why_not
 from orchestrator.testing.coverage.tracer import name_of, tracing
 from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
+from tests.native_runs import shipped_scenarios
 
-SHIPPED = [scenario.name for scenario in (*page_scenarios(), *page_scenarios("apa"))]
+PAGES = [models_for({"system": system}) for system in ("", "apa")]
+SHIPPED = [name for name, scenario in shipped_scenarios().items() if not why_not(scenario) and scenario.models in PAGES]
 EACH_CHANGE = (
     *("guo2015-case4", "apa-parallel", "zhang2022-double-track", "adaptive", "hsic", "preview"),
     *("fault-pose-noise", "apa-takeover"),

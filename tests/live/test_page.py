@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
 from tests.live.person import drive, hurries_once, never_obeys, obeys, standing_clock
 
+scenarios_of = cache(page_scenarios)
 LARGEST_PAGE = 400_000
 PHASES = [state.name for state in Phase]
 WHOLE = """(names) => names.map((name) => {
@@ -43,13 +45,13 @@ GROWS = "preview-camera"
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return written(tmp_path_factory.mktemp("live"), page_scenarios())
+    return written(tmp_path_factory.mktemp("live"), scenarios_of())
 
 
 @pytest.fixture(scope="module")
 def apa_file(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The page of the parking system, whose controller is an FMU of its own."""
-    return written(tmp_path_factory.mktemp("live-apa"), page_scenarios("apa"))
+    return written(tmp_path_factory.mktemp("live-apa"), scenarios_of("apa"))
 
 
 def written(folder: Any, scenarios: Any) -> Any:
@@ -78,7 +80,7 @@ def watched(show: Any, file: Any, scenario: Any) -> Iterator[Any]:
 
 
 def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
-    as_on_record(page, page_scenarios())
+    as_on_record(page, scenarios_of())
 
 
 @pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute
@@ -90,7 +92,7 @@ def test_the_parking_system_has_a_page_of_its_own(apa_page: Any) -> None:
     apa_page.wait_for_function("() => !window.live.isDue")
     agrees(ghost(apa_page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
     assert ghost(apa_page)["manoeuvres"] == 5
-    as_on_record(apa_page, page_scenarios("apa"))
+    as_on_record(apa_page, scenarios_of("apa"))
 
 
 def as_on_record(page: Any, scenarios: Any) -> None:

@@ -12,7 +12,7 @@ import pytest
 from modelkit.variables import variables
 from orchestrator.evaluation.verdict.measures import Measure, measure_recording
 from orchestrator.evaluation.verdict.numbers import MEASURES
-from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile
@@ -21,6 +21,7 @@ from orchestrator.studies.sweep.job import chunks, make_job
 from orchestrator.studies.sweep.rows import FIRST_MEASURE
 from orchestrator.studies.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.studies.sweep.study.study import Study
+from tests.native_runs import shipped_scenarios
 from tests.twin.replays import CLibrary, Fmi3, played
 
 LIKE_OTHERS = (
@@ -41,8 +42,8 @@ LIKE_OTHERS = (
 has their ends, `make release` the bits."""
 SCENARIOS = [
     pytest.param(name, marks=pytest.mark.release if name in LIKE_OTHERS else ())
-    for name in scenario_names()
-    if load_scenario(name, []).models == MODELS
+    for name, scenario in shipped_scenarios().items()
+    if scenario.models == MODELS
 ]
 """Those of a controller apart have their own: tests/planning."""
 PYTHON_FMU_TOO = ("fault-pose-nan", "fault-driver-takes-over", "guo2015-case4", "guo2015-case4-105")

@@ -1,7 +1,6 @@
 """The command ``apa``: imports the command that is chosen and turns errors into exit codes."""
 
 import argparse
-import errno
 import gc
 import io
 import os
@@ -17,7 +16,7 @@ from typing import Any
 from orchestrator.commands import COMMANDS
 from orchestrator.inputs.text.command_parser import CommandParser
 from orchestrator.inputs.text.ends import interrupt_within_limit
-from orchestrator.inputs.text.errors import SCARCE_RESOURCES
+from orchestrator.inputs.text.errors import SCARCE_RESOURCES, lacks_resources
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
@@ -35,7 +34,6 @@ MIN_ADDRESS_SPACE = 256 << 20
 PACKAGES_THAT_HANG = frozenset({"scipy", "pyarrow"})
 PACKAGE_ADDRESS_SPACE = 1536 << 20
 """Below it, the native libraries of these packages hang or abort when memory is refused, instead of raising."""
-SCARCE = frozenset({errno.ENOMEM, errno.EMFILE, errno.ENFILE, errno.EAGAIN})
 SCARCE_TEXTS = ("Cannot allocate memory", "cannot allocate memory", "failed to map segment", "can't start new thread")
 SPARING = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
 """Set unless they are set: numpy's threads, that nothing here needs, take a tenth of a second to begin; to look for
@@ -92,8 +90,7 @@ def _is_scarce(error: BaseException | None) -> bool:
     seen: set[int] = set()  # an error raised again while its own consequence is handled leads to itself
     while error is not None and id(error) not in seen:
         seen.add(id(error))
-        wants = isinstance(error, OSError) and error.errno in SCARCE
-        if isinstance(error, MemoryError) or wants or any(text in str(error) for text in SCARCE_TEXTS):
+        if lacks_resources(error) or any(text in str(error) for text in SCARCE_TEXTS):
             return True
         error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
     return False

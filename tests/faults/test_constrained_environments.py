@@ -228,7 +228,7 @@ def check(name: str, command: str, tmp_path: Path, shim: Path, references: dict[
         assert result(command, ended.out) == found, ended
     elif is_heard:
         lines = [text for text in ended.err.splitlines() if text.startswith("apa: ") and "warning" not in text]
-        assert len(lines) == 1 or (command == "test" and '"could_not_run": true' in ended.out), ended
+        assert len(lines) == 1 or (command == "test" and '"error": "' in ended.out), ended
     return ended
 
 

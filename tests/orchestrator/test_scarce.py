@@ -7,8 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from mcap.records import Channel
 
 from orchestrator.inputs.text.failures import place_of
+from orchestrator.presentation.log import records
+from orchestrator.simulation.cosim import model_description
 
 resource = pytest.importorskip("resource", reason="limits of this kind are POSIX's")
 RUN = ["run", "guo2015-case4", "--fmus", "none", "--no-page"]
@@ -104,3 +107,18 @@ def test_a_folder_that_is_gone_is_named(tmp_path: Path) -> None:
     )
     assert done.returncode == 2
     assert "the current folder is gone" in done.stderr
+
+
+@pytest.mark.parametrize("error", [OSError(errno.EMFILE, "Too many open files"), MemoryError()])
+def test_a_file_is_not_to_blame_for_scarce_resources(
+    error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(model_description, "read_model_description", fails)
+    with pytest.raises(type(error)):
+        model_description.read_description(tmp_path / "none.fmu")
+    monkeypatch.setattr(records, "ReadDataStream", fails)
+    with pytest.raises(type(error)):
+        records.parse_record(Channel, records.RawRecord(0, 4, memoryview(b"")))

@@ -1,5 +1,6 @@
 """The errors a user can cause or meet, each one sentence that says what would be right."""
 
+import errno
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -62,6 +63,12 @@ class NotRunError(Exception):
 SHOWN_REASONS = 3
 RESOURCES = (OSError, MemoryError)
 """What keeps a run from taking place, beside an FMU that cannot be loaded."""
+SCARCE_ERRNOS = frozenset({errno.ENOMEM, errno.EMFILE, errno.ENFILE, errno.EAGAIN})
+
+
+def lacks_resources(error: BaseException) -> bool:
+    """Return whether an error is for want of memory, files or threads: the file that was read is not to blame."""
+    return isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno in SCARCE_ERRNOS)
 
 
 def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:

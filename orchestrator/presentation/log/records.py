@@ -18,7 +18,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, lacks_resources
 
 HEAD = struct.Struct("<BQ")
 CHUNK = struct.Struct("<QQQII")
@@ -288,4 +288,6 @@ def parse_record(record: Any, piece: RawRecord) -> Any:
     try:
         return record.read(ReadDataStream(io.BytesIO(bytes(piece.body))))
     except Exception as error:
+        if lacks_resources(error):
+            raise
         raise Damage(piece.at, f"a record has no meaning ({type(error).__name__})") from error

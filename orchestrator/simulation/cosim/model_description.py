@@ -14,7 +14,7 @@ from lxml import etree
 from modelkit.model import Model
 from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
-from orchestrator.inputs.text.errors import BadInput, excerpt, format_value
+from orchestrator.inputs.text.errors import BadInput, excerpt, format_value, lacks_resources
 from orchestrator.inputs.text.quantities import MOST_WHOLE
 from orchestrator.simulation.cosim.declared import check_declared
 from orchestrator.simulation.cosim.fmu_instance import Ports, Scale
@@ -67,6 +67,8 @@ def _read_description(path: Path, _stamp: tuple[int, int, int] | None) -> ModelD
     except IndexError as error:
         raise BadInput("its ModelStructure has an index, or a reference, of no variable", file=path) from error
     except Exception as error:
+        if lacks_resources(error):
+            raise
         raise BadInput(f"is not an FMU: {excerpt(error)}", file=path) from error
     names = Counter(item.name for item in description.modelVariables)
     twice = next((name for name, count in names.items() if count > 1), None)

@@ -15,6 +15,7 @@ from fmus.files import whole
 from orchestrator.evaluation.verdict.conditions import CONDITIONS
 from orchestrator.inputs.scenario.scenario import PENETRATION, Scenario
 from orchestrator.inputs.text.console import Meter, say
+from orchestrator.inputs.text.errors import lacks_resources
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.falsification.objective import smallest
@@ -118,9 +119,9 @@ def _read_part(part: Path, shares: Array, seeds: Seeds) -> Evaluations | None:
             if not (np.array_equal(found["shares"], shares) and np.array_equal(found["seeds"], seeds)):
                 return None
             margins, words = found["margins"], found["words"]
-    except MemoryError:
-        raise
     except Exception as error:  # zip, zlib, numpy's header: each has errors of its own
+        if lacks_resources(error):
+            raise
         say(f"apa: warning: {part}: is damaged ({type(error).__name__}); its runs are made again")
         return None
     whole = margins.shape == words.shape == seeds.shape

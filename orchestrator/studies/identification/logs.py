@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmus.installation import missing_package
-from orchestrator.inputs.text.errors import BadInput, excerpt, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, excerpt, lacks_resources, suggestion_or_choices
 from orchestrator.inputs.text.quantities import unit_symbol
 from orchestrator.inputs.text.table_file import TableError, read_table, unit_in_name
 from orchestrator.presentation.log.read_log import read_info, read_log
@@ -173,6 +173,8 @@ class _McapLog(Log):
         except BadInput:
             raise
         except Exception as error:
+            if lacks_resources(error):
+                raise
             raise BadInput(f"is no MCAP file ({type(error).__name__}: {error})", file=path) from error
 
     def _read(self) -> None:

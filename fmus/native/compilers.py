@@ -36,6 +36,10 @@ FRAME_REPORT = "-Wframe-larger-than=127"
 FRAME = re.compile(r"\bframe size (?:of )?\(?(\d+)\)?")
 
 
+class CompilerError(RuntimeError):
+    """There is no C compiler, or it refuses."""
+
+
 class CompilerOutput(NamedTuple):
     """What a compiler made."""
 
@@ -71,7 +75,7 @@ class Compiler(NamedTuple):
         ``RuntimeError`` with the compiler's words if it refuses.
         """
         if not self.can_make(target):
-            raise RuntimeError(f"{self.command[0]} compiles for this machine only; others need --cc zig")
+            raise CompilerError(f"{self.command[0]} compiles for this machine only; others need --cc zig")
         with folder_for_a_while("c") as here:
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
@@ -99,7 +103,7 @@ class Compiler(NamedTuple):
         command = [*self.command, *cross, *arguments]
         done = run_child(command, directory, _environment())
         if done.returncode:
-            raise RuntimeError(f"{shlex.join(command)}: {done.stderr.strip()}")
+            raise CompilerError(f"{shlex.join(command)}: {done.stderr.strip()}")
         return str(done.stderr)
 
 
@@ -128,13 +132,13 @@ def find_compiler(cc: str | None = None) -> Compiler:
         try:
             return _system(tuple(shlex.split(named)))
         except ValueError as error:
-            raise RuntimeError(f"{named}: no command of a C compiler: {error}") from error
+            raise CompilerError(f"{named}: no command of a C compiler: {error}") from error
     from importlib.metadata import PackageNotFoundError, version
 
     try:
         words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:
-        raise RuntimeError(
+        raise CompilerError(
             f"there is no C compiler; run: {install_command('native')} (ziglang, compiles for all platforms), "
             "or set the variable CC to a C compiler of this machine"
         ) from None
@@ -143,7 +147,7 @@ def find_compiler(cc: str | None = None) -> Compiler:
 
 def _system(command: tuple[str, ...]) -> Compiler:
     if shutil.which(command[0]) is None:
-        raise RuntimeError(f"there is no C compiler called {command[0]}")
+        raise CompilerError(f"there is no C compiler called {command[0]}")
     done = run_child([*command, "--version"])
     return Compiler(command, (done.stdout or done.stderr).partition("\n")[0].strip(), False)
 

@@ -133,7 +133,6 @@ ENVIRONMENTS = {
             "no compiler": 'export CC=/nonexistent/cc APA_DIST="$PWD/dist"; "$@"',
             "compiler that fails": 'export CC=/bin/false APA_DIST="$PWD/dist"; "$@"',
             "folder that is read-only": 'bwrap --dev-bind / / --ro-bind "$PWD" "$PWD" --bind tmp "$TMPDIR" -- "$@"',
-            "a folder that is no text": f"there=$'a\\xffb'; mkdir \"$there\"; {IN}",
             "disk of 4 kB": f'{DISK.format(4096)}"$@"',
         },
         REFUSED,
@@ -143,6 +142,7 @@ ENVIRONMENTS = {
             "path of 3,500 letters": "there=$(printf 'd%.0s' {1..200}); "
             'for i in {1..17}; do mkdir "$there"; mv *.yaml "$there" 2>/dev/null; cd "$there"; done; '
             f'mkdir -p {"e" * 200}; cp *.yaml {"e" * 200}; cd {"e" * 200}; "$@"',
+            "a folder that is no text": f"there=$'a\\xffb'; mkdir \"$there\"; {IN}",
             "no shared memory": 'bwrap --dev-bind / / --ro-bind /sys /dev/shm -- "$@"',
             "disk of 64 kB": f'{DISK.format(65536)}"$@"',
             "disk of 1 MB": f'{DISK.format(1 << 20)}"$@"',

@@ -13,6 +13,7 @@ from typing import Any, cast
 import pytest
 
 from fmus import files
+from fmus.native.compilers import CompilerError, find_compiler
 from orchestrator.cli import main
 from orchestrator.inputs.text.failures import exit_code_and_message
 
@@ -81,6 +82,16 @@ def test_a_package_that_is_not_installed_is_named(module: str, code: int, text: 
     found, line = exit_code_and_message(ModuleNotFoundError(f"No module named {module!r}", name=module), [])
     assert found == code
     assert text in line
+
+
+def test_a_compiler_that_is_missing_or_fails_is_no_internal_error() -> None:
+    """Studies in compiled code met it outside of the places that expected it."""
+    with pytest.raises(CompilerError) as raised:
+        find_compiler("/nonexistent/cc")
+    for error in (raised.value, CompilerError("cc -o x: error\nbad")):
+        code, line = exit_code_and_message(error, [])
+        assert code == 2
+        assert "\n" not in line
 
 
 def test_without_memory_it_is_no_internal_error(

@@ -22,6 +22,7 @@ from orchestrator.inputs.text.errors import (
     BadInput,
     NotRunError,
     RunError,
+    excerpt,
     format_value,
 )
 
@@ -70,6 +71,8 @@ def exit_code_and_message(error: BaseException, words: Sequence[str]) -> tuple[i
         )
     if isinstance(error, MemoryError):
         return BAD_INPUT, SCARCE_RESOURCES
+    if isinstance(error, RuntimeError) and _is_of_compiler(error):
+        return BAD_INPUT, excerpt(" ".join(str(error).split()))
     if isinstance(error, ModuleNotFoundError):
         package = (error.name or "").partition(".")[0]
         extra = _extra_of(package)
@@ -159,6 +162,12 @@ def _folders() -> list[Path]:
     from platformdirs import user_log_path
 
     return [user_log_path("apa-cosim", appauthor=False), Path(tempfile.gettempdir())]
+
+
+def _is_of_compiler(error: RuntimeError) -> bool:
+    from fmus.native.compilers import CompilerError
+
+    return isinstance(error, CompilerError)
 
 
 def _extra_of(package: str) -> str:

@@ -6,11 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.installation import missing_package
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import Variable, variables
 from orchestrator.inputs.scenario.models import MODELS
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, excerpt
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 MODEL = MODELS["vehicle"]
@@ -37,7 +36,7 @@ class CompiledVehicle:
         try:
             self._library: Any = load_model(MODEL)
         except RuntimeError as error:
-            raise BadInput(f"identification runs compiled code; {missing_package('ziglang', 'native')}") from error
+            raise BadInput(f"identification runs compiled code: {excerpt(error)}") from error
         self._memory = np.zeros(memory_size(self._library) // 8 + 1)
         self._start = [float(item.start) for item in PARAMETERS.values()]
         self._places = {name: place for place, name in enumerate(PARAMETERS)}

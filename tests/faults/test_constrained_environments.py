@@ -86,7 +86,6 @@ ENVIRONMENTS = {
             "time zone that there is not": 'export TZ=Nowhere/Nothing; "$@"',
             "terminal that there is not": 'export TERM=none COLUMNS=0 LINES=-1; "$@"',
             "narrow terminal": 'export COLUMNS=3; "$@"',
-            "Python -OO": 'export PYTHONOPTIMIZE=2; "$@"',
             "Python in development mode": 'export PYTHONDEVMODE=1; "$@"',
             "warnings are errors": 'export PYTHONWARNINGS=error::ResourceWarning; "$@"',
             "bytecode elsewhere": 'export PYTHONPYCACHEPREFIX=/dev/null/x; "$@"',
@@ -143,6 +142,7 @@ ENVIRONMENTS = {
             'for i in {1..17}; do mkdir "$there"; mv *.yaml "$there" 2>/dev/null; cd "$there"; done; '
             f'mkdir -p {"e" * 200}; cp *.yaml {"e" * 200}; cd {"e" * 200}; "$@"',
             "a folder that is no text": f"there=$'a\\xffb'; mkdir \"$there\"; {IN}",
+            "Python -OO": 'export PYTHONOPTIMIZE=2; "$@"',
             "no shared memory": 'bwrap --dev-bind / / --ro-bind /sys /dev/shm -- "$@"',
             "disk of 64 kB": f'{DISK.format(65536)}"$@"',
             "disk of 1 MB": f'{DISK.format(1 << 20)}"$@"',

@@ -59,6 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
         import pyarrow  # noqa: F401
     except ModuleNotFoundError as error:
         raise BadInput(missing_package(error.name or "", "native,sweep")) from error
+    except AttributeError as error:
+        raise BadInput("the package cma needs docstrings: run Python without -OO (PYTHONOPTIMIZE=2)") from error
     if arguments.regression is not None:
         return _corpus(arguments.regression, as_json=arguments.json)
     if arguments.study is None:

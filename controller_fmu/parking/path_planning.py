@@ -169,7 +169,7 @@ def continue_plan(
         return wait_for_change(memory, inputs, params)
     if memory.plan.steps == 0:
         memory = _with_request(memory, inputs, params)
-        if memory.plan.is_final:
+        if memory.plan.is_final or memory.plan.is_found:
             return memory
     plan = memory.plan
     search_until(work, plan.obstacles, params.map, plan.request, plan.steps)
@@ -201,6 +201,8 @@ def without_path(
     """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
     if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, params):
         return memory._replace(plan=memory.plan._replace(is_final=True))
+    if memory.plan.is_optional:
+        return memory._replace(plan=memory.plan._replace(is_found=True))
     if memory.progress.direction != 0.0 and reason != Reason.LEFT_PATH:
         return memory._replace(plan=memory.plan._replace(failure=reason, failed_at=memory.perception.time))
     return memory._replace(reason=reason)

@@ -61,6 +61,8 @@ class PlanProgress(NamedTuple):
     is_found: bool = False
     is_relaxed: bool = False
     """The goal was blocked by what was measured inside the gap: planned between the slot's own limits alone."""
+    is_optional: bool = False
+    """The path in hand is free and only misses the goal: it is kept unless there is a better one."""
     failure: int = Reason.NONE
     """No path leads on from where the vehicle was on its way: it waits for a change of the map."""
     failed_at: int = 0

@@ -26,6 +26,7 @@ from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import has_blind_side
 from controller_fmu.parking.monitor.collision_monitor import (
+    NO_LIMIT,
     EchoObstacle,
     MonitorVerdict,
     VehicleMotion,
@@ -237,17 +238,18 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
     speeds = speed_tracking(memory, inputs, params)
-    lost = abs(progress.lateral_error) > params.monitor.corridor
-    lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
+    lost = is_lost(progress, params)
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
-    blocked_long = seconds(memory.clocks.blocked) > patience
+    is_obstructed = memory.verdict.free_distance < NO_LIMIT
+    blocked_long = is_obstructed and seconds(memory.clocks.blocked) > patience
     halts = blocked or lost or is_out
+    is_displaced = standing and not halts and is_goal_displaced(memory, inputs.odometry, params)
     straightens = memory.state == ParkingState.STRAIGHTENING
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
         | bit(Condition.MUST_STOP, must_stop(progress, speeds, FollowingContext(params.car, params.drive)) or halts)
-        | bit(Condition.REPLAN, standing and (lost or blocked_long))
+        | bit(Condition.REPLAN, standing and (lost or blocked_long or is_displaced))
         | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)
         | bit(Condition.IN_PLACE, in_place)
@@ -263,20 +265,44 @@ def speed_tracking(memory: ParkingMemory, inputs: ParkingSystemInput, params: Pa
     return SpeedTracking(measured, abs(memory.speed), max(params.drive.brake_delay, memory.progress.speed_delay))
 
 
+def is_lost(progress: PathProgress, params: ParkingParams) -> bool:
+    """Return whether the vehicle is too far from its path."""
+    is_aside = abs(progress.lateral_error) > params.monitor.corridor
+    return is_aside or abs(progress.heading_error) > params.monitor.corridor_heading
+
+
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
     if memory.strategy == Strategy.PULL_OUT:
         return True
     if memory.plan.is_final and is_acceptable(memory, inputs.odometry, params):
         return True
-    goal = memory.plan.request.goal
     if memory.strategy == Strategy.SLOT:
         slot = slot_in_map(memory, inputs.odometry, params)
         if not stands_in_slot(slot, inputs.odometry, params):
             return False
+    return is_at_goal(memory, inputs.odometry, inputs.odometry, params)
+
+
+def is_at_goal(memory: ParkingMemory, end: Pose, pose: Pose, params: ParkingParams) -> bool:
+    """Return whether ``end`` is near enough to the goal as a vehicle at ``pose`` knows it now."""
+    goal = memory.plan.request.goal
+    if memory.strategy == Strategy.SLOT:
+        slot = slot_in_map(memory, pose, params)
         goal = goal_pose(slot, vehicle_outline(params.car, params.plan.curvature_fraction), params.slot)
     along = params.final.position + abs(params.drive.rolling_offset)
-    return is_near(inputs.odometry, goal, along, params.final.position, params.final.heading)
+    return is_near(end, goal, along, params.final.position, params.final.heading)
+
+
+def is_goal_displaced(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> bool:
+    """Return whether the rest of the path ends where a vehicle that drives it would have to plan again."""
+    has_rest = has_path(memory.state) and memory.progress.manoeuvres > 0 and not is_at_end(memory.progress)
+    return has_rest and not is_at_goal(memory, memory.plan.request.goal, pose, params)
+
+
+def has_path(state: int) -> bool:
+    """Return whether a vehicle in this state follows a path, or stands on it."""
+    return state in (ParkingState.STEERING, ParkingState.STOPPING)
 
 
 def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -296,12 +322,15 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         memory = memory._replace(strategy=Strategy.POSE)
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
         remembered = memory.perception.remembered
-        if memory.verdict.is_blocked:
+        is_blocked = memory.verdict.is_blocked
+        is_optional = has_path(before) and not is_blocked and not is_lost(memory.progress, params)
+        if is_blocked:
             remembered = remember_echoes(remembered, memory.perception.echoes)
         memory = memory._replace(
             perception=memory.perception._replace(remembered=remembered),
             clocks=memory.clocks._replace(blocked=0),
             verdict=MonitorVerdict(),
+            plan=memory.plan._replace(is_optional=is_optional),
         )
         memory = begin_plan(memory)
     if state == ParkingState.STEERING and before != ParkingState.STEERING:

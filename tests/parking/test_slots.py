@@ -157,7 +157,7 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=ahead, front=1.0)
     flank = side(3.0 + beyond, -3.5, 90.0, 3.0 if beyond > 0.0 else 0.3)
     corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
-    assert corrected.ahead.start == pytest.approx(edge)
+    assert corrected.ahead.start == pytest.approx(edge, abs=0.005)
 
 
 def test_a_car_that_is_still_being_passed_is_no_pillar() -> None:
@@ -365,3 +365,26 @@ def test_two_sensors_that_measure_a_corner_of_the_slot_show_no_surface() -> None
         point = point_between(pair[0], ranges[0], pair[1], ranges[1])
         assert (point.x, point.y) == (pytest.approx(at.x), pytest.approx(at.y))
         assert is_slot_corner(slot_filter, point) == is_corner
+
+
+def test_a_turned_car_bounds_the_gap_where_the_vehicle_will_stand_however_much_of_its_flank_is_mapped() -> None:
+    """A car turned by 5 deg, whose corner is 3 m along the row: of its flank the mouth, the middle or the end."""
+    row = SlotRow(Pose(), -1.0, used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=RowMember(3.0, 4.8))
+    lean = math.tan(math.radians(5.0))
+    edges = []
+    for deep in (0.6, 2.2, 3.6):
+        flank = side(3.0 + deep * lean, -deep, -85.0, 1.0)
+        edges.append(correct_slot(slot, (flank,) * MAX_LANDMARKS, OUTLINE, MappingParams()).ahead.start)
+    assert edges == pytest.approx([3.0 + OUTLINE.half_length * lean] * 3, abs=0.005)
+
+
+def test_a_short_piece_of_a_flank_does_not_narrow_the_gap_by_what_its_direction_errs() -> None:
+    """0.7 m of a flank at the mouth, turned by 9 deg and known to 8 deg: half a vehicle deep it may be anywhere."""
+    row = SlotRow(Pose(), -1.0, used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=RowMember(3.0, 4.8))
+    sigma = math.radians(8.0)
+    piece = side(3.03, -0.3, 261.0, 0.7)._replace(hh=sigma * sigma)
+    landmarks = (side(3.0, -2.5, 90.0, 2.0), piece) + (Landmark(),) * (MAX_LANDMARKS - 2)
+    corrected = correct_slot(slot, landmarks, OUTLINE, MappingParams())
+    assert corrected.ahead.start == pytest.approx(3.0, abs=0.02)

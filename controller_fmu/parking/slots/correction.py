@@ -4,7 +4,7 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, segment_point
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, offset_variance, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.candidate import (
@@ -19,8 +19,8 @@ from modelkit.maths import wrap_angle
 
 MIN_CORRECTION_GATE = 0.2
 CORRECTION_GATE_SIGMA = 3.0
-"""A flank outside the gap corrects a neighbour's corner by at most three standard deviations of that corner, and 0.2 m
-where it claims to be known better: corners err by 7 cm rms after entering."""
+"""Flank and corner of one car differ by at most three standard deviations of both, and 0.2 m where they claim to be
+known better: corners err by 7 cm rms after entering."""
 MIN_FLANK = 0.5
 """A shorter side [m] is no flank of a car; in the gap it may be a pillar's."""
 MIN_FACE = 0.2
@@ -31,29 +31,36 @@ MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
 
 
-def _with_edge(corrected: SlotCandidate, candidate: SlotCandidate, x: float, is_of_car: bool) -> SlotCandidate:
+def _with_edge(
+    corrected: SlotCandidate, candidate: SlotCandidate, x: float, sigma: float, is_of_car: bool
+) -> SlotCandidate:
     """Return a slot with the edge that a flank at ``x`` [m] along its row is; ``is_of_car``: of no pillar.
 
-    It bounds the gap wherever it stands in it: the corner seen from the road may have been moving. Outside the gap it
-    corrects an edge by no more than that is uncertain: a flank farther out stands behind a pillar. The first flank of a
-    car may be as far out as half of it, since the car may have moved away.
+    Where it is the edge known so far, within what that is uncertain, both count by how well they are known, and are
+    known no better than the better one: they come from the same echoes. Else it bounds the gap wherever it stands in
+    it: the corner seen from the road may have been moving. The first flank of a car may be as far out as half of it,
+    since the car may have moved away; any other one out there stands behind a pillar.
     """
-    middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
-    is_behind = x < middle
-    known = candidate if candidate.type == SlotType.PARALLEL else corrected
-    before = known.behind.end if is_behind else known.ahead.start
-    is_first = before == (candidate.behind.end if is_behind else candidate.ahead.start)
-    sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
-    gate = max(correction_gate(sigma), 0.5 * CAR_WIDTH if is_first and is_of_car else 0.0)
-    if is_behind and x > before - gate:
-        return corrected._replace(behind=corrected.behind._replace(end=x))
-    if not is_behind and x < before + gate:
-        return corrected._replace(ahead=corrected.ahead._replace(start=x))
-    return corrected
+    is_behind = x < 0.5 * (candidate.behind.end + candidate.ahead.start)
+    initial = candidate.behind.end if is_behind else candidate.ahead.start
+    before = corrected.behind.end if is_behind else corrected.ahead.start
+    is_first = before == initial
+    known = corrected.behind.end_sigma if is_behind else corrected.ahead.start_sigma
+    known = correction_gate(known) / CORRECTION_GATE_SIGMA if is_first else known
+    gate = correction_gate(math.sqrt(known * known + sigma * sigma))
+    inside = x - before if is_behind else before - x
+    if abs(inside) < gate:
+        x = before + known * known / (known * known + sigma * sigma) * (x - before)
+        sigma = min(known, sigma)
+    elif inside < 0.0 and not (is_first and is_of_car and inside > -0.5 * CAR_WIDTH):
+        return corrected
+    if is_behind:
+        return corrected._replace(behind=corrected.behind._replace(end=x, end_sigma=sigma))
+    return corrected._replace(ahead=corrected.ahead._replace(start=x, start_sigma=sigma))
 
 
 def correction_gate(sigma: float) -> float:
-    """Return by how much [m] a flank may correct a corner of standard deviation ``sigma`` [m]."""
+    """Return by how much [m] two measurements of one edge may differ, ``sigma`` [m] being their standard deviation."""
     return max(MIN_CORRECTION_GATE, CORRECTION_GATE_SIGMA * sigma)
 
 
@@ -69,7 +76,8 @@ def correct_slot(
             if candidate.type != SlotType.PARALLEL:
                 corrected = _beside_flank(corrected, candidate, landmark, point, outline)
             elif _is_end_of_neighbour(landmark, candidate, point):
-                corrected = _with_edge(corrected, candidate, point.x, False)
+                sigma = math.sqrt(offset_variance(landmark, 0.5 * (landmark.start + landmark.end)))
+                corrected = _with_edge(corrected, candidate, point.x, sigma, False)
     return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))
 
 
@@ -97,13 +105,17 @@ def _beside_flank(
     length = length_of(landmark)
     is_behind = 2.0 * middle.x < candidate.behind.end + candidate.ahead.start
     inside = middle.x - candidate.behind.end if is_behind else candidate.ahead.start - middle.x
-    if landmark.type == LandmarkType.POINT or length <= MIN_FACE:
+    if landmark.type == LandmarkType.POINT or length <= MIN_FLANK:
         sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
         room = candidate.ahead.start - candidate.behind.end - 2.0 * outline.half_width
         is_post = correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
-        return _with_edge(corrected, candidate, middle.x, False) if is_post else corrected
+        sigma = math.sqrt(landmark.xx + landmark.yy)
+        return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
     side_length = candidate.behind.end_length if is_behind else candidate.ahead.start_length
-    is_of_car = length > MIN_FLANK and not is_too_short_for_car(side_length)
-    if deep > 0.0 and _angle_to_row(landmark, candidate) < MAX_ANGLE and (length > MIN_FLANK or inside > 0.0):
-        return _with_edge(corrected, candidate, middle.x, is_of_car)
+    is_of_car = not is_too_short_for_car(side_length)
+    if deep > 0.0 and _angle_to_row(landmark, candidate) < MAX_ANGLE:
+        turn = landmark.heading - candidate.row.frame.heading
+        further = candidate.row.side * (outline.half_length - deep) / math.sin(turn)
+        sigma = math.sqrt(offset_variance(landmark, 0.5 * (landmark.start + landmark.end) + further))
+        return _with_edge(corrected, candidate, middle.x + further * math.cos(turn), sigma, is_of_car)
     return corrected

@@ -350,7 +350,7 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
 
 
 def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float) -> SlotCandidate:
-    """Return the slot with its standard deviations, the middle's ``deep`` [m] behind the corners, by its side's sign.
+    """Return the slot with its standard deviations, ``deep`` [m] behind the corners, by its side's sign.
 
     All echoes share the errors of the sensors' mounting and of the surfaces, however many there are.
     """
@@ -359,14 +359,15 @@ def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float
     half_sin = 0.5 * math.sin(heading)
     across = Pose(-half_sin, half_cos, 0.0)
     along = Pose(half_cos, half_sin, -0.5 * deep)
+    edge = Pose(2.0 * half_cos, 2.0 * half_sin, -deep)
     shared = FRONT_SIGMA * FRONT_SIGMA
     share = _behind_share(slot)
     turned = _sum_variance(covariance, Pose(0.0, 0.0, share), Pose(0.0, 0.0, 1.0 - share))
     row_sigma = slot.row.heading_sigma
     return slot._replace(
         row=slot.row._replace(heading_sigma=math.sqrt(row_sigma * row_sigma + turned)),
-        behind=slot.behind._replace(end_sigma=_sigma_along(covariance, 0, heading)),
-        ahead=slot.ahead._replace(start_sigma=_sigma_along(covariance, AHEAD_OFFSET, heading)),
+        behind=slot.behind._replace(end_sigma=math.sqrt(_sum_variance(covariance, edge, Pose()))),
+        ahead=slot.ahead._replace(start_sigma=math.sqrt(_sum_variance(covariance, Pose(), edge))),
         front_sigma=math.sqrt(_sum_variance(covariance, across, across) + shared),
         middle_sigma=math.sqrt(_sum_variance(covariance, along, along) + shared),
     )
@@ -398,13 +399,3 @@ def _sum_variance(covariance: tuple[float, ...], behind: Pose, ahead: Pose) -> f
     for row in range(END_INDEX):
         total += weights[row] * _row_product(covariance, weights, row)
     return max(total, 0.0)
-
-
-def _sigma_along(covariance: tuple[float, ...], at: int, heading: float) -> float:
-    """Return the standard deviation [m] of a corner along the row."""
-    cos = math.cos(heading)
-    sin = math.sin(heading)
-    xx = covariance[at * STATE_COUNT + at]
-    xy = covariance[at * STATE_COUNT + at + 1]
-    yy = covariance[(at + 1) * STATE_COUNT + at + 1]
-    return math.sqrt(max(cos * cos * xx + 2.0 * cos * sin * xy + sin * sin * yy, 0.0))

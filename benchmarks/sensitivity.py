@@ -52,7 +52,8 @@ from orchestrator.studies.sweep.table import Table
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator", "benchmarks")
 SCALES = (0.7, 1.4)
 COLUMNS = ("file", "constant", "value", "scale", "rows", "differ", "other_outcome", "parked_change", "lost")
-DOES_NOT_RUN = "does not run"
+WITHOUT_RESULT = ("does not run", "", "", "", "")
+"""Instead of an effect, where the study with the changed constant does not run."""
 LONGEST_RUN = 300.0
 """Time [s] after which a study with a copy of the packages is given up: scaled codes of cases end no loop."""
 OWNER = "controller"
@@ -251,7 +252,7 @@ def main(words: list[str]) -> int:
             for scale in SCALES:
                 if (item.file, item.name, f"{scale:g}") not in done:
                     table = variants.run(number, scale)
-                    found = (DOES_NOT_RUN,) if table is None else effect(variants.base, table)
+                    found = WITHOUT_RESULT if table is None else effect(variants.base, table)
                     print(item.file, item.name, f"{item.value:g}", f"{scale:g}", *found, sep="\t", file=out, flush=True)
     return 0
 

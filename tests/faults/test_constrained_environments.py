@@ -3,7 +3,6 @@
 An environment is a line of bash around the command ``"$@"``.
 """
 
-import json
 import os
 import shutil
 import subprocess
@@ -15,6 +14,7 @@ from typing import Any, Literal, NamedTuple
 import pytest
 
 from fmus.native.compilers import can_compile
+from tests.faults.printed_result import result
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["--fmus", "native", "--set", "stop_time=1", "--json"]
@@ -200,16 +200,6 @@ def run_in(line: str, command: str, folder: Path, shim: Path) -> Ended:
     words = ["bash", "-c", line, "bash", sys.executable, "-m", "orchestrator", *COMMANDS[command], "--out", "out"]
     done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, check=False, timeout=LONGEST)
     return Ended(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"))
-
-
-def result(command: str, printed: str) -> Any:
-    """Return what a command came to, without times."""
-    found = json.loads(printed)
-    if command == "run":
-        return [found[name] for name in ("outcome", "reason", "final", "duration")]
-    if command == "test":
-        return [[item["outcome"], item["passed"]] for item in found["scenarios"]]
-    return [found[name] for name in (("count", "done") if command == "sweep" else ("runs", "broken"))]
 
 
 def check(name: str, command: str, tmp_path: Path, shim: Path, references: dict[str, tuple[int, Any]]) -> Ended:

@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from fmus.native.compilers import can_compile
+from tests.faults.printed_result import result
 
 ROOT = Path(__file__).parents[2]
 SHIM = Path(__file__).with_name("failing_call.c")
@@ -163,16 +164,6 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
 @pytest.fixture(scope="module")
 def references(bench: Bench) -> dict[str, tuple[int, Any]]:
     return {}
-
-
-def result(command: str, printed: str) -> Any:
-    """Return what a command came to, without times."""
-    found = json.loads(printed)
-    if command == "run":
-        return [found[name] for name in ("outcome", "reason", "final", "duration")]
-    if command == "test":
-        return [[item["outcome"], item["passed"]] for item in found["scenarios"]]
-    return [found[name] for name in (("count", "done") if command == "sweep" else ("runs", "broken"))]
 
 
 def holds(bench: Bench, references: Any, command: str, call: str, at: int) -> bool:

@@ -217,7 +217,8 @@ def _line_through(row: SlotRow, line: CornerLine, lean: float) -> CornerLine:
     if n == 0.0:
         return line
     spread = sxx - sx * sx / n
-    slope = (sxy - sx * sy / n) / spread if spread > LINE_LENGTH else line.slope
+    is_known = spread > 0.5 * LINE_LENGTH * LINE_LENGTH
+    slope = (sxy - sx * sy / n) / spread if is_known else line.slope
     return CornerLine(slope, (sy - slope * sx) / n)
 
 

@@ -148,6 +148,16 @@ def test_every_command_is_in_the_reference(generate: Any) -> None:
         assert f"## apa {name}\n" in page
 
 
+def test_every_option_is_in_a_page_of_its_own_words(generate: Any) -> None:
+    """The reference lists all; a page says what one is for."""
+    top = parser()
+    commands = [top, *(sub for _, sub in generate.subcommands(top))]
+    options = {option for command in commands for option in re.findall(r"--[a-z][\w-]+", command.format_usage())}
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert len(options) > 60
+    assert sorted(options - set(re.findall(r"--[a-z][\w-]+", pages))) == []
+
+
 def test_scenarios_and_files_pages(generate: Any) -> None:
     text = generate.scenarios_page()
     assert "`guo2015-case4`" in text

@@ -259,15 +259,6 @@ def test_a_key_of_what_the_scenario_does_not_have(bind: Any) -> None:
         bind(scenario="preview", runs={"grid": {"target.x": [1.0]}})
 
 
-def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(bind: Any) -> None:
-    _, _, job, chunk = bind(runs={"grid": {}})
-    data = job_to(job)
-    del data["scenario"]["target"]
-    old = job_from(json.loads(json.dumps(data)))
-    assert old.scenario["target"] == {"x": -7.608, "y": -3.056, "heading": 0.0}
-    assert judge(old, truths(old, chunk), run_batch(old, chunk)).reason == ["all checks passed"]
-
-
 def test_a_table_of_a_version_with_other_parameters_sets_those_it_names(bind: Any) -> None:
     """Places are those of the models now: an older version may have had one more before, or one less."""
     keys = {"vehicle.ultrasonic.noise": [0.01], "vehicle.odometry.radius_error": [0.002], "stop_time": [50.0]}

@@ -231,6 +231,7 @@ FORGED = {
     "no outcome": without("outcome"),
     "no seed": without("run_seed"),
     "key of no scenario": about(lambda reported: reported["job"]["scenario"].update({"start.y": 1.0})),
+    "scenario without target": about(lambda reported: reported["job"]["scenario"].pop("target")),
     "scenario of numbers": about(lambda reported: reported["job"].update(scenario=5)),
     "study without a name": about(lambda reported: reported["study"].pop("name")),
     "labels of numbers": about(lambda reported: reported["study"].update(labels=[1])),

@@ -14,7 +14,7 @@ from orchestrator.evaluation.verdict.measures import Instants, Measure
 from orchestrator.evaluation.verdict.truth import TRUE_KEYS, GroundTruth, join_truths, truth_of
 from orchestrator.inputs.scenario.models import MODELS, models_for
 from orchestrator.inputs.scenario.pace import DURATION, NAMES, UNLIMITED, stop_times
-from orchestrator.inputs.scenario.scenario import Scenario, Target
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.quantities import NS_PER_SECOND
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import TRUE_OWNERS
@@ -196,9 +196,12 @@ def job_to(job: Job) -> dict[str, Any]:
 
 
 def job_from(data: dict[str, Any]) -> Job:
-    """Return the job that :func:`job_to` wrote, its parameters placed as the models have them now."""
+    """Return the job that :func:`job_to` wrote, its parameters placed as the models have them now.
+
+    ``KeyError`` for a scenario without target, as earlier versions wrote.
+    """
     if "target" not in data["scenario"]:
-        data = {**data, "scenario": {**data["scenario"], "target": _controller_target(data["scenario"]["controller"])}}
+        raise KeyError("target")
     named = _places_by_name(data["scenario"])
     fields = zip(data["owners"], data["names"], data["places"], strict=True)
     places = [named[owner][name] if owner in named else int(place) for owner, name, place in fields]
@@ -218,9 +221,3 @@ def _places_by_name(scenario: dict[str, Any]) -> dict[str, dict[str, int]]:
 
 def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:
     return Measure(how, signal, None if when is None else Instants(when[0], tuple(when[1])))
-
-
-def _controller_target(controller: dict[str, Any]) -> dict[str, float]:
-    """Return the target of a table of an older version, which judged by the controller's target."""
-    starts = {item.name: float(item.start) for item in variables(MODELS["controller"].params)}
-    return {name: float(controller.get(f"target.{name}", starts[f"target.{name}"])) for name in Target.model_fields}

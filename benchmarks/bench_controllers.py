@@ -8,7 +8,6 @@ standstill. Medians over the rounds.
 
 import ctypes
 import statistics
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -37,9 +36,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.recording import inputs_seen
 from orchestrator.studies.bakeoff.entries import CONTROLLERS, scenario_of
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
-from qp_problems import dense, random_problem
+from tests.controller.qp_problems import dense, random_problem
 
 MOST_ROUNDS, REPEATS = size((15, 50), (1, 1))
 PROBLEMS = size(30, 2)
@@ -80,8 +77,8 @@ class StepCost(NamedTuple):
     """Of the slowest step in CPython, of each step the shortest of the drives [ms]."""
     compiled: float
     """Mean in C [us]."""
-    count: int
-    """Steps in the drive."""
+    steps: int
+    """How many the drive has."""
 
 
 def step_cost(library: Any, scenario: Scenario) -> StepCost:
@@ -112,7 +109,7 @@ def bench_controllers(library: Any) -> None:
         record(f"control step, {name}, CPython", cost.python, "us")
         record(f"control step, {name}, compiled", cost.compiled, "us")
         print(
-            f"{name:24s}{cost.python:10.1f}{cost.compiled:10.2f}{cost.count:10d}{cost.slowest:14.2f}",
+            f"{name:24s}{cost.python:10.1f}{cost.compiled:10.2f}{cost.steps:10d}{cost.slowest:14.2f}",
             flush=True,
         )
 
@@ -121,9 +118,10 @@ def replay(params: Any, seen: list[Any], step_ns: int) -> tuple[list[float], lis
     """Step the controller in CPython through the inputs it saw; return the times of the steps [s], the last outputs."""
     state, outputs = MODEL.initialize(params)
     spent = []
+    step = MODEL.stepper(None)
     for inputs in seen:
         begun = time.perf_counter()
-        state, outputs = MODEL.step(state, inputs, params, step_ns)
+        state, outputs = step(state, inputs, params, step_ns)
         spent.append(time.perf_counter() - begun)
     return spent, [float(value) for value in flatten(outputs)]
 

@@ -3,7 +3,6 @@
 In a headless Chromium, if there is one. Case 4; the native runs are the batch on one thread.
 """
 
-import shutil
 import tempfile
 import time
 from pathlib import Path
@@ -11,11 +10,11 @@ from typing import Any
 
 from benchmarks.bench_sweep import bound
 from benchmarks.results import SKIPPED, record, size
-from docs.pictures import FLAGS
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
 from orchestrator.studies.sweep.batch import run_batch
+from tests.conftest import FLAGS, chromium
 
 RUNS, SECONDS = size((300, 6.0), (5, 0.2))
 MANY = """(count) => {
@@ -30,7 +29,7 @@ FRAMES = """() => { window.frames_seen = 0; const one = () => { window.frames_se
 
 def main() -> None:
     """Print what was measured."""
-    program = shutil.which("chromium") or shutil.which("google-chrome")
+    program = chromium()
     if program is None:
         print("skipped: no Chromium is installed")
         raise SystemExit(SKIPPED)

@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -109,7 +110,7 @@ def rates() -> None:
     for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, max(2, MANOEUVRES // DISTURBED_SHARE))):
         for name, has_own_code in (("complete", False), ("study code", True)):
             runs = prepare(scenario, count, has_own_code)
-            found = [measured(lambda n=n, runs=runs: runs.run(n)) for n in threads]
+            found = [measured(partial(runs.run, n)) for n in threads]
             label = f"{scenario}, {name}"
             for number, (wall, _) in zip(threads, found, strict=True):
                 record(f"{label}, {number} threads", count / wall, "1/s")
@@ -124,7 +125,7 @@ def rates() -> None:
     case4 = load_scenario(PLAIN)
     for kind in ("python", "native"):
         files = fmu_files(kind)
-        alone, burnt = measured(lambda files=files, kind=kind: run_scenario(case4, files, kind=kind))
+        alone, burnt = measured(partial(run_scenario, case4, files, kind=kind))
         record(f"case-4 manoeuvre, {kind} FMUs, processor time", 1e3 * burnt, "ms")
         print(f"{kind:6} FMUs, one process   {1.0 / alone:8.1f} a second, {1e3 * burnt:.0f} ms of processor each; "
               f"the batch needs {burnt * MANOEUVRES / processor:.0f} times less")  # fmt: skip

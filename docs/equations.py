@@ -53,7 +53,8 @@ def _docstrings(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
 
 def _fields(body: list[ast.stmt]) -> Iterator[tuple[str, int, str]]:
     for before, node in pairwise(body):
-        is_text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        if is_text and isinstance(before, ast.AnnAssign | ast.Assign):
+        if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
+            continue
+        if isinstance(before, ast.AnnAssign | ast.Assign):
             target = before.target if isinstance(before, ast.AnnAssign) else before.targets[0]
             yield ast.unparse(target), before.lineno, str(node.value.value)

@@ -260,7 +260,7 @@ def factor_row(factor: Factor) -> list[str]:
 def files_page() -> str:
     """Return the keys of scenarios, requirements and summary.json."""
     parts = ["# Files\n"]
-    written = {
+    written: dict[str, type[BaseModel]] = {
         "Scenario (YAML)": Scenario,
         "Target": Target,
         "Slot": Slot,
@@ -277,13 +277,14 @@ def files_page() -> str:
     for title, model in written.items():
         rows = [[*row[:3], row[3].replace("``", "`")] for row in key_rows(model)]
         parts.append(f"## {title}\n\n{about(model)}\n\n{table(['key', 'type', 'default', 'meaning'], rows)}")
-    for title, model in {
+    shown: dict[str, type[BaseModel]] = {
         "summary.json": Summary,
         "final": Final,
         "events": Event,
         "checks": Check,
         "fmus": FmuUsed,
-    }.items():
+    }
+    for title, model in shown.items():
         rows = [[row[0], row[1], row[3].replace("``", "`")] for row in key_rows(model)]
         parts.append(f"## {title}\n\n{about(model)}\n\n{table(['key', 'type', 'meaning'], rows)}")
     return "\n".join(parts)

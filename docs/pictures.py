@@ -1,9 +1,8 @@
-"""Writes docs/images: the pages of this project as a headless Chromium shows them. ``python docs/pictures.py``.
+"""Writes docs/images: the pages of this project as a headless Chromium shows them. ``python -m docs.pictures``.
 
 Needs Chromium (or Chrome) and the package playwright; the pictures are kept in the repository.
 """
 
-import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -12,18 +11,9 @@ from typing import Any
 from playwright.sync_api import sync_playwright
 
 from orchestrator.cli import main as apa
+from tests.conftest import FLAGS, chromium
 
 IMAGES = Path(__file__).parent / "images"
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.complies_with_slow_down=true"]
 
 
@@ -32,7 +22,7 @@ def main() -> None:
     IMAGES.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
         runs = make_runs(Path(folder))
-        program = shutil.which("chromium") or shutil.which("google-chrome") or sys.exit("no Chromium found")
+        program = chromium() or sys.exit("no Chromium found")
         browser = play.chromium.launch(executable_path=program, args=FLAGS)
         wide = {"viewport": {"width": 1440, "height": 900}}
         photograph(browser, runs["report"], "report", "#t=14.5", wide)

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.scenario.scenario import Scenario
-from orchestrator.session.session import run_scenario
+from orchestrator.session.session import SimulationResult, run_scenario
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.simulation.cosim.recording import Recording
 
@@ -15,6 +15,13 @@ from orchestrator.simulation.cosim.recording import Recording
 def shipped_scenarios() -> dict[str, Scenario]:
     """Return name -> shipped scenario, read once in this process."""
     return {name: load_scenario(name) for name in scenario_names()}
+
+
+def drive_natively(scenario: Scenario) -> SimulationResult:
+    """Return a run of a scenario by native FMUs; in process without a C compiler."""
+    if not can_compile():
+        return run_scenario(scenario)
+    return run_scenario(scenario, fmu_files("native"), kind="native")
 
 
 @cache

@@ -105,6 +105,7 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Any:
     c_fmus.two_arcs(folder)
     text = (c_fmus.THEIR / "two_arcs.yaml").read_text(encoding="utf-8")
     (folder / "plain.yaml").write_text(text.replace("their-case4", "plain"), encoding="utf-8")
+    (folder / "short.yaml").write_text(f"stop_time: 0.5\n{text}", encoding="utf-8")
     modes = f"  modes:\n    controller.State: {{states: {STATES}, transitions: {LISTED}}}\n"
     (folder / "listed.yaml").write_text(text + modes, encoding="utf-8")
     return folder
@@ -133,10 +134,9 @@ def test_of_the_fmu_of_others_a_mode_is_seen(desk: Any, tmp_path: Path, capsys: 
 def test_what_nobody_lists_is_told_and_has_no_threshold(
     desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    plain = str(desk / "plain.yaml")
-    assert main(["test", plain, "--min-transition-coverage", "1", "--out", str(tmp_path)]) == 2
+    assert main(["test", str(desk / "short.yaml"), "--min-transition-coverage", "1", "--out", str(tmp_path)]) == 2
     assert "nothing says which transitions there are" in capsys.readouterr().err
-    assert main(["test", plain, "--coverage", "--out", str(tmp_path)]) == 0
+    assert main(["test", str(desk / "plain.yaml"), "--coverage", "--out", str(tmp_path)]) == 0
     assert "3 seen, none listed" in capsys.readouterr().out
     data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))
     assert list(data["charts"][0]["states"]) == ["standby", "path tracking", "straighten", "parked"]

@@ -84,7 +84,8 @@ def test_what_an_fmu_prints_or_does_at_its_end_harms_no_run(
 def test_after_an_error_the_process_is_gone(tmp_path: Path) -> None:
     for name, code in (("step-hang", 1), ("step-crash", 1), ("load-hang", 2)):
         path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
-        assert main(["run", path, "--fmus", "none", "--timeout", "3", "--out", str(tmp_path / name), "-q"]) == code
+        words = ["run", path, "--fmus", "none", "--timeout", "3", "--out", str(tmp_path / name), "-q", "--no-page"]
+        assert main(words) == code
     assert alive() == []
 
 

@@ -23,11 +23,11 @@ from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.requirements import REQUIREMENT_SETS
 from orchestrator.inputs.scenario.scenario import Scenario
-from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.steptest.run import run_step_test
 from orchestrator.testing.steptest.step_test import load_step_test
 from orchestrator.testing.suite.junit import cases_of
+from tests.native_runs import drive_natively
 from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 
 BOX = "{x: -4, y: -1.5, length: 1, width: 1}"
@@ -44,7 +44,7 @@ def through(*more: str, things: str = f"scene.boxes=[{BOX}]") -> Scenario:
 
 
 def driven(scenario: Scenario) -> Any:
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     return ran.recording, summarize(ran.recording, scenario, ran.wall_time)
 
 

@@ -18,7 +18,7 @@ from orchestrator.presentation.drawing.figure import overview, picture
 from orchestrator.presentation.drawing.panels import PANELS, Panel, PanelCurve
 from orchestrator.presentation.drawing.picture_data import overview_of
 from orchestrator.presentation.drawing.picture_process import PictureBeside
-from orchestrator.session.session import run_scenario
+from tests.native_runs import drive_natively
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 
@@ -34,7 +34,7 @@ DEMO = str(Path(__file__).with_name("demo.yaml"))
 )
 def test_a_picture_of_any_run(tmp_path: Path, sets: list[str]) -> None:
     scenario = load_scenario(DEMO, sets)
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     file = tmp_path / "a.png"
     file.write_bytes(picture(overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)))
     pixels = imread(file)
@@ -44,7 +44,7 @@ def test_a_picture_of_any_run(tmp_path: Path, sets: list[str]) -> None:
 
 def test_a_long_title_is_not_cut_off() -> None:
     scenario = load_scenario(DEMO, ["stop_time=0.01"])
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
     ends = []
     for title in ("short", "W" * 60, "W" * 150, "controller.car = {width: 1.9}, " * 9):
@@ -58,7 +58,7 @@ def test_a_long_title_is_not_cut_off() -> None:
 @pytest.mark.parametrize("more", [0, 1, 3])
 def test_no_panel_of_the_picture_covers_another(more: int) -> None:
     scenario = load_scenario(DEMO, ["stop_time=1"])
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
     added = (
         Panel(f"brake-{number}", f"Brake {number}", "1", 0.1, (PanelCurve("vehicle.speed"),), column=4 + number)
@@ -81,7 +81,7 @@ def test_no_panel_of_the_picture_covers_another(more: int) -> None:
 
 def test_no_legend_covers_a_title() -> None:
     scenario = load_scenario(DEMO, ["stop_time=1"])
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     figure = overview(overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario))
     renderer = FigureCanvasAgg(figure).get_renderer()
     figure.draw(renderer)
@@ -93,7 +93,7 @@ def test_no_legend_covers_a_title() -> None:
 
 def test_a_signal_that_hardly_changes_has_the_least_span_of_its_panel() -> None:
     scenario = load_scenario(DEMO, ["stop_time=1"])
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     panel = Panel("brake", "Brake", "1", 0.5, (PanelCurve("vehicle.pose.heading"),), column=1)
     seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
     axes = next(item for item in overview(seen, (panel,)).axes if item.get_title("left") == "(a) brake")
@@ -103,7 +103,7 @@ def test_a_signal_that_hardly_changes_has_the_least_span_of_its_panel() -> None:
 
 def test_a_process_beside_draws_the_same() -> None:
     scenario = load_scenario(DEMO, ["stop_time=1"])
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
     with PictureBeside() as beside:
         beside.begin(seen)

@@ -43,26 +43,32 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("name", ["two_arcs", "all_theirs"])
-def test_systems_of_others_park_by_a_few_lines(
-    name: str, desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.fixture(scope="module", params=["two_arcs", "all_theirs"])
+def driven(request: pytest.FixtureRequest, desk: Path) -> tuple[str, Path]:
+    """A scenario of the desk, and the folder of its run."""
+    folder = desk / f"{request.param}-run"
+    assert main(["run", str(desk / f"{request.param}.yaml"), "--out", str(folder), "--quiet"]) == 0
+    return request.param, folder
+
+
+def test_systems_of_others_park_by_a_few_lines(driven: tuple[str, Path], desk: Path) -> None:
     """A controller in C with deg and km/h; with it a PythonFMU as vehicle and an FMI 3.0 sensor, each in its frame."""
+    name, folder = driven
     assert len((desk / f"{name}.yaml").read_text().splitlines()) <= MOST_LINES
-    assert main(["run", str(desk / f"{name}.yaml"), "--fmus", "none", "--out", str(tmp_path), "--json"]) == 0
-    summary = json.loads(capsys.readouterr().out)
+    summary = json.loads((folder / "summary.json").read_text())
     assert (summary["outcome"], summary["manoeuvres"]) == ("parked", 1)
     assert abs(summary["final"]["lateral_error"]) < 0.03
     assert [event["to"] for event in summary["events"]] == ["PATH_TRACKING", "STRAIGHTEN", "PARKED"]
     used = {item["name"]: item for item in summary["fmus"]}
     assert used["controller"]["kind"] == "foreign"
     assert Path(used["controller"]["path"]).name == "two_arcs.fmu"
-    assert (tmp_path / "report.html").stat().st_size > 10_000
+    assert (folder / "report.html").stat().st_size > 10_000
 
 
-def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> None:
-    main(["run", str(desk / "all_theirs.yaml"), "--fmus", "none", "--out", str(tmp_path), "--no-page", "--quiet"])
-    log = read_log(tmp_path / "run.mcap")
+@pytest.mark.parametrize("driven", ["all_theirs"], indirect=True)
+def test_the_log_has_their_names_and_the_roles(driven: tuple[str, Path]) -> None:
+    file = driven[1] / "run.mcap"
+    log = read_log(file)
     x, east, course = (log.signals[name] for name in ("vehicle.pose.x", "plant.East", "plant.Course"))
     assert x == pytest.approx(east / 100.0 - 2.405 * np.cos(np.radians(course)), abs=1e-12)
     assert log.signals["vehicle.pose.heading"] == pytest.approx([-math.radians(value) for value in course])
@@ -70,7 +76,7 @@ def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> No
     assert log.states("gps.quality") == {1: "NONE", 2: "FAIR", 3: "GOOD"}
     assert log.parameters["gps.bias"] == 0.05
     assert log.states("controller.phase")[9] == "PARKED"
-    with (tmp_path / "run.mcap").open("rb") as stream:
+    with file.open("rb") as stream:
         summary = make_reader(stream).get_summary()
         assert summary is not None
         topics = {channel.topic for channel in summary.channels.values()}
@@ -80,21 +86,22 @@ def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> No
 def test_parameters_and_faults_of_a_third_instance(
     desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    system = ["run", str(desk / "all_theirs.yaml"), "--fmus", "none", "--out", str(tmp_path), "--no-page", "--json"]
-    assert main([*system, "--set", "gps.bias=20 cm"]) == 0
+    system = ["run", str(desk / "all_theirs.yaml"), "--out", str(tmp_path), "--no-page", "--json"]
+    short = [*system, "--set", "stop_time=4", "--force"]
+    assert main([*short, "--set", "gps.bias=20 cm"]) == 1
     assert read_log(tmp_path / "run.mcap").parameters["gps.bias"] == 0.2
     assert main([*system, "--set", "gps.bais=20 cm"]) == 2
     assert "gps.bais: unknown; did you mean gps.bias?" in capsys.readouterr().err
     fault = "[{signal: gps.pose, kind: stuck_at_last, start: 3}]"
-    assert main([*system, "--force", "--set", f"faults={fault}"]) == 1
-    assert read_log(tmp_path / "run.mcap").signals["controller.Yaw"][-1] == pytest.approx(
-        math.degrees(read_log(tmp_path / "run.mcap").signals["gps.pose[3]"][300]) * -1.0, abs=1e-9
-    )
+    assert main([*short, "--set", f"faults={fault}"]) == 1
+    signals = read_log(tmp_path / "run.mcap").signals
+    assert signals["controller.Yaw"][-1] == pytest.approx(math.degrees(-signals["gps.pose[3]"][300]), abs=1e-9)
+    assert signals["gps.pose[3]"][-1] != signals["gps.pose[3]"][300]
 
 
 def test_a_suite_runs_systems_beside_shipped_scenarios(desk: Path, tmp_path: Path) -> None:
     names = [str(desk / "two_arcs.yaml"), "guo2015-case3"]
-    assert main(["test", *names, "--fmus", "none", "--out", str(tmp_path), "--quiet"]) == 0
+    assert main(["test", *names, "--out", str(tmp_path), "--quiet"]) == 0
     assert json.loads((tmp_path / "their-case4" / "summary.json").read_text())["outcome"] == "parked"
 
 
@@ -126,7 +133,7 @@ def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk:
     limit = "{id: slow, signal: vehicle.speed, max_abs: 1, window: {phase: TO_Q1}, source: us, required: false}"
     path = desk / "own_states.yaml"
     path.write_text(f"{text}requirements: [{limit}]\n")
-    assert main(["run", str(path), "--fmus", "none", "--out", str(tmp_path), "--quiet", "--no-page"]) == 0
+    assert main(["run", str(path), "--out", str(tmp_path), "--quiet", "--no-page"]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert [event["to"] for event in summary["events"]] == ["FIRST", "SECOND", "THERE"]
     assert summary["checks"][0]["note"] == "not measured"

@@ -10,7 +10,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.log.line import Line
 from orchestrator.presentation.report.overlay import write_overlay
 from orchestrator.presentation.report.replay import replay_page
-from orchestrator.session.session import run_scenario
+from tests.native_runs import drive_natively
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 
@@ -19,7 +19,7 @@ EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 def case4() -> Any:
     """Recording and summary of case 4, run in process, with a hostile title."""
     scenario = load_scenario("guo2015-case4").model_copy(update={"title": f"{EVIL} & case 4"})
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     return ran.recording, summarize(ran.recording, scenario, ran.wall_time)
 
 
@@ -36,7 +36,7 @@ def replay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def overlay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of that run and one with another gain."""
     scenario = load_scenario("guo2015-case4", ["controller.guo2015.k4=3"])
-    runs = (case4[0], run_scenario(scenario).recording)
+    runs = (case4[0], drive_natively(scenario).recording)
     path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
     write_overlay(path, runs, ([], []), [compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1)))])
     return path
@@ -45,7 +45,9 @@ def overlay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def three(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of three runs, each with another gain."""
-    others = [run_scenario(load_scenario("guo2015-case4", [f"controller.guo2015.k4={k4}"])).recording for k4 in (2, 3)]
+    others = [
+        drive_natively(load_scenario("guo2015-case4", [f"controller.guo2015.k4={k4}"])).recording for k4 in (2, 3)
+    ]
     runs = [case4[0], *others]
     path: Path = tmp_path_factory.mktemp("three") / "overlay.html"
     write_overlay(path, runs, ([], [], []), [compare(runs[0], run, Tolerances(Tolerance(0.01))) for run in others])

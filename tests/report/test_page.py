@@ -22,7 +22,7 @@ from orchestrator.presentation.report.page import page
 from orchestrator.presentation.report.payload import Arrays
 from orchestrator.presentation.report.replay import LARGEST_PAGE, replay_page
 from orchestrator.presentation.report.thinning import RANGE_TOLERANCE, thin
-from orchestrator.session.session import run_scenario
+from tests.native_runs import drive_natively
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 
@@ -114,7 +114,7 @@ def test_sixty_seconds_stay_under_one_megabyte_whatever_happens() -> None:
     scenario = load_scenario(
         "fault-driver-does-not-move", ["stop_time=60", "controller.limit.driver_response_timeout=100"]
     )
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     recording = ran.recording
     assert recording.t[-1] == 60.0
     random = np.random.default_rng(1)
@@ -127,7 +127,7 @@ def test_sixty_seconds_stay_under_one_megabyte_whatever_happens() -> None:
 
 def test_far_from_the_origin_nothing_is_rounded_away() -> None:
     scenario = load_scenario("guo2015-case4-far")
-    ran = run_scenario(scenario)
+    ran = drive_natively(scenario)
     header, arrays = data_of(replay_page(ran.recording, summarize(ran.recording, scenario, 0.0), []))
     run = header["runs"][0]
     signal = run["signals"]["vehicle.pose.x"]
@@ -160,7 +160,7 @@ def test_thinning_says_when_it_cannot() -> None:
 
 def test_a_run_of_one_instant_has_a_page_and_one_of_none_is_refused() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=0.01"])
-    recording = run_scenario(scenario).recording
+    recording = drive_natively(scenario).recording
     for rows in (1, 0):
         recording.t_ns = recording.t_ns[:rows]
         recording.signals = {name: values[:rows] for name, values in recording.signals.items()}

@@ -5,15 +5,23 @@ from typing import Any
 
 import pytest
 
+from orchestrator.simulation.cosim.kinds import default_kind
+
 pytest_plugins = ["pytester"]
 INSTALLED = "apa_cosim" in entry_points(group="pytest11").names
 """Whether pytest finds the plugin by itself; it does where the package is installed."""
-PLUGIN = (*(() if INSTALLED else ("-p", "apa_cosim.pytest_plugin")), "-p", "no:cacheprovider", "--apa-fmus", "none")
+PLUGIN = (
+    *(() if INSTALLED else ("-p", "apa_cosim.pytest_plugin")),
+    "-p",
+    "no:cacheprovider",
+    "--apa-fmus",
+    default_kind(),
+)
 
 
 @pytest.fixture
 def run(pytester: pytest.Pytester) -> Any:
-    return lambda *words: pytester.runpytest_subprocess(*PLUGIN, *words)
+    return lambda *words: pytester.runpytest_inprocess(*PLUGIN, *words)
 
 
 def test_fixtures_drive_the_system_and_each_part_alone(pytester: pytest.Pytester, run: Any) -> None:

@@ -50,7 +50,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
     right = -far
     for number in range(MAX_SENSORS):
         mount = sensors.mounts[number]
-        is_middle = number > 0 and is_pair(number) and is_pair(number - 1)
+        is_middle = is_pair(number) or is_pair(number - 1)
         status = reading_status(readings[number], sensors)
         if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
             x = mount.x + readings[number] * math.cos(mount.yaw)

@@ -204,9 +204,16 @@ def test_two_sensors_of_a_bumper_give_the_surface_before_them() -> None:
     b = SensorPose(0.0, -0.3, 1.0, 0.0)
     wall = facing_segment(a, 0.8, b, 0.85, 1e-4)
     assert wall.type == LandmarkType.SEGMENT
-    assert sorted((start_point(wall).x, end_point(wall).x)) == pytest.approx([0.8, 0.85])
-    assert offset_of(wall, 0.0, 0.0) > 0.0, "sensors are on the left, as of every side"
+    assert offset_of(wall, a.x, a.y) == pytest.approx(0.8), "sensors are on the left, as of every side"
+    assert offset_of(wall, b.x, b.y) == pytest.approx(0.85)
     assert facing_segment(a, 0.8, b, 1.4, 1e-4).type == LandmarkType.NONE
+
+
+def test_a_sensor_that_looks_aside_measures_the_same_wall() -> None:
+    inner = SensorPose(0.0, 0.25, 1.0, 0.0)
+    outer = SensorPose(-0.1, -0.25, math.cos(0.4), -math.sin(0.4))
+    wall = facing_segment(inner, 0.8, outer, 0.9, 1e-4)
+    assert [start_point(wall).x, end_point(wall).x] == pytest.approx([0.8, 0.8])
 
 
 def test_the_outline_is_sampled_all_around() -> None:

@@ -20,7 +20,7 @@ from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.external import external_candidate, external_pose, has_passed_external
-from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.slots.goal import goal_pose, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow
 from modelkit.car import Car
@@ -169,3 +169,21 @@ def test_the_vehicle_stands_beside_a_kerb_as_gbt_wants(beyond: float, shift: flo
     slot = SlotCandidate(type=SlotType.PARALLEL, row=row, depth=depth, front=1.0, front_sigma=0.025)
     slot = slot._replace(behind=RowMember(end=0.0), ahead=RowMember(start=6.0))
     assert -goal_pose(slot, OUTLINE, SLOT).y == pytest.approx(1.0 + OUTLINE.half_width + shift)
+
+
+@pytest.mark.parametrize("left", [-0.02, 0.0, 0.06, 0.5])
+def test_in_a_slot_hardly_deeper_than_the_vehicle_it_keeps_the_same_room_behind_and_before(left: float) -> None:
+    length = 2.0 * OUTLINE.half_length
+    slot = judged(square(SlotKind.TAIL_IN, 2.6, length))._replace(depth=length + left, front_sigma=0.04)
+    pose = goal_pose(slot, OUTLINE, SLOT)
+    overhang = overhang_of(slot, OUTLINE, pose)
+    behind = left + overhang
+    if left == 0.5:
+        assert (overhang, behind) == pytest.approx((0.0, 0.5)), "flush with its neighbours"
+    elif left == 0.06:
+        assert behind == pytest.approx(SLOT.distance_behind)
+    else:
+        assert behind - SLOT.least_behind == pytest.approx(most_overhang(slot, OUTLINE, SLOT) - overhang)
+    assert least_depth(slot, OUTLINE, SLOT) == pytest.approx(
+        length + SLOT.least_behind - most_overhang(slot, OUTLINE, SLOT)
+    )

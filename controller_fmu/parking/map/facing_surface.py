@@ -15,8 +15,8 @@ BUMPER_SENSORS = 8
 """Numbers 0 to 3 in front, 4 to 7 behind."""
 FACING_ECHOES = 8
 """Echoes of a track after which its object counts as at rest: its closing rate is then known to 0.2 m/s."""
-MAX_TILT_SLOPE = 0.36
-"""Tangent of the largest tilt of a surface against the bumper: 20 deg."""
+MAX_TILT_SLOPE = 0.34
+"""Sine of the largest tilt of a surface against the bumper: 20 deg."""
 MAX_FACING_RANGE = 1.5
 """Farther echoes [m] are not used yet."""
 LATERAL_SIGMA = 0.15
@@ -24,8 +24,11 @@ LATERAL_SIGMA = 0.15
 
 
 def is_pair(number: int) -> bool:
-    """Return whether sensor ``number`` (0 to 7) and the next are beside each other on one bumper."""
-    return number != 3 and number != BUMPER_SENSORS - 1
+    """Return whether sensor ``number`` (0 to 7) and the next are the two in the middle of one bumper.
+
+    An outer one looks aside: into a slot it measures a neighbour's flank.
+    """
+    return number == 1 or number == 5
 
 
 def point_between(a: SensorPose, a_range: float, b: SensorPose, b_range: float) -> Point:
@@ -40,11 +43,21 @@ def point_between(a: SensorPose, a_range: float, b: SensorPose, b_range: float) 
 
 
 def facing_segment(a: SensorPose, a_range: float, b: SensorPose, b_range: float, variance: float) -> Landmark:
-    """Return the segment between the feet [m] on two sensors' axes; ``variance`` [m2]; type NONE if they disagree."""
-    base = math.sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y))
-    if abs(a_range - b_range) > MAX_TILT_SLOPE * base + 3.0 * math.sqrt(2.0 * variance):
+    """Return the segment between the feet of two sensors on a surface; ``variance`` [m2]; type NONE if they disagree.
+
+    The surface is the common tangent of both circles of equal range: its normal need not lie on either axis.
+    """
+    dx = b.x - a.x
+    dy = b.y - a.y
+    base = math.sqrt(dx * dx + dy * dy)
+    tilt = (a_range - b_range) / base
+    if abs(tilt) > MAX_TILT_SLOPE + 3.0 * math.sqrt(2.0 * variance) / base:
         return Landmark()
-    foot = Point(a.x + a_range * a.axis_x, a.y + a_range * a.axis_y)
-    other = Point(b.x + b_range * b.axis_x, b.y + b_range * b.axis_y)
+    ahead = math.sqrt(max(1.0 - tilt * tilt, 0.0))
+    ahead = ahead if a.axis_y * dx - a.axis_x * dy > 0.0 else -ahead
+    nx = (tilt * dx - ahead * dy) / base
+    ny = (tilt * dy + ahead * dx) / base
+    foot = Point(a.x + a_range * nx, a.y + a_range * ny)
+    other = Point(b.x + b_range * nx, b.y + b_range * ny)
     segment = segment_between(foot, other, Point(a.x, a.y), variance, LATERAL_SIGMA * LATERAL_SIGMA)
     return segment._replace(confirmations=FACING_ECHOES)

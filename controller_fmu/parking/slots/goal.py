@@ -14,7 +14,7 @@ from controller_fmu.parking.slots.candidate import (
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import UNEVEN_SIGMA, SlotRow
+from controller_fmu.parking.slots.row import SlotRow
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -22,18 +22,16 @@ from modelkit.vocabulary import Pose
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
     """Return the pose of the rear-axle midpoint to park at.
 
-    Where one neighbour stands out more than cars do, as its bicycle rack may, it is flush with the other one.
+    Across the road that is the neighbour that stands further in: the other one may carry a bicycle rack.
     """
     middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
     if candidate.type == SlotType.PARALLEL:
         deep = candidate.front + outline.half_width + kerb_shift(candidate, outline, params)
         heading = candidate.row.frame.heading
     else:
-        room = candidate.depth - 2.0 * outline.half_length - params.distance_behind
+        room = candidate.depth - 2.0 * outline.half_length - _distance_behind(candidate, outline, params)
         uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.slope == 0.0 else 0.0
-        inward = (
-            min(0.5 * uneven, params.stand_out) if uneven > params.confidence * math.sqrt(2.0) * UNEVEN_SIGMA else 0.0
-        )
+        inward = 0.5 * uneven
         deep = candidate.front + outline.half_length + min(inward, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)
@@ -54,7 +52,17 @@ def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
     """Return how deep [m] a slot of this type must be for the vehicle to stand in it, as far out as it may."""
     if candidate.type == SlotType.PARALLEL:
         return 2.0 * outline.half_width
-    return 2.0 * outline.half_length + params.distance_behind - most_overhang(candidate, outline, params)
+    return 2.0 * outline.half_length + params.least_behind - most_overhang(candidate, outline, params)
+
+
+def _distance_behind(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
+    """Return the distance [m] to the end of a slot across the road at which the vehicle is to stand.
+
+    In a slot hardly deeper than the vehicle it stands half way between the least distance and the largest overhang.
+    """
+    left = candidate.depth - 2.0 * outline.half_length
+    most = max(most_overhang(candidate, outline, params), 0.0)
+    return min(params.distance_behind, 0.5 * (params.least_behind + most + left))
 
 
 def most_overhang(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:

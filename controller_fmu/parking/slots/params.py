@@ -26,6 +26,7 @@ class SlotParams(NamedTuple):
     distance_behind: Annotated[
         float, Signal("m", "distance to a slot's end: the monitor's and two standard deviations", 0.05, 2.0, HOUSE)
     ] = 0.08
+    least_behind: Annotated[float, Signal("m", "least distance to a slot's end: the monitor's", 0.0, 2.0, HOUSE)] = 0.04
     kerb_min: Annotated[
         float, Signal("m", "least distance to a kerb beside: 5 cm, and 5 cm for errors", 0.0, 1.0, GBT)
     ] = 0.1

@@ -48,11 +48,14 @@ def angled_cars(degrees: float) -> list[Box]:
     return [Box(x + place, y, -turn, LENGTH, WIDTH) for place in places]
 
 
-def passed(boxes: list[Box], end: float, side: float = -1.0, heading: float = 0.0) -> Passed:
-    """Pass cars ``side`` of the road until ``end``, at an angle of ``heading`` [rad] to their row."""
+def passed(boxes: list[Box], end: float, side: float = -1.0, heading: float = 0.0, beside: float = 1.2) -> Passed:
+    """Pass cars ``side`` of the road until ``end``, at an angle of ``heading`` [rad] to their row.
+
+    At the middle of the row the vehicle is ``beside`` [m] off it.
+    """
     local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
     boxes = boxes if side < 0.0 else [box._replace(y=-box.y, heading=-box.heading) for box in boxes]
-    start = Pose(-11.0, -side * (CAR.width / 2 + 1.2 + 11.0 * math.tan(heading)), heading * side)
+    start = Pose(-11.0, -side * (CAR.width / 2 + beside + 11.0 * math.tan(heading)), heading * side)
     for _, pose, readings in drive_past(boxes, start, end + 11.0, 1, speed=1.5):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
@@ -97,6 +100,21 @@ def test_a_row_is_found_on_a_way_past_that_is_oblique_to_it(degrees: float) -> N
     slot = slot_in(passed(angled_cars(degrees), 8.9, -1.0, math.radians(-8.0)))
     assert (slot.type, slot.reason) == (SlotType.PERPENDICULAR, Reason.NONE)
     assert slot.is_nose_in == (degrees < 90)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "end", "heading", "beside"),
+    [(30, 12.5, 12.0, 3.2), pytest.param(60, 8.9, -11.0, 2.8, marks=pytest.mark.slow)],
+)
+def test_a_row_is_angled_by_its_road_whatever_the_way_past_is(
+    degrees: float, end: float, heading: float, beside: float
+) -> None:
+    """The cars' sides are along the path or across it, within 20 deg, and yet oblique to the line of their corners."""
+    found = passed(angled_cars(degrees), end, -1.0, math.radians(heading), beside)
+    slot = slot_in(found)
+    assert (slot.type, slot.reason, slot.is_nose_in) == (SlotType.PERPENDICULAR, Reason.NONE, True)
+    into = found.row.frame.heading - 0.5 * math.pi
+    assert abs(into + math.radians(degrees)) < math.radians(3.0)
 
 
 def test_the_sides_of_oblique_cars_are_mapped_where_the_boundary_of_the_cone_meets_them() -> None:

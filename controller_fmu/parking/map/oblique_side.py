@@ -11,6 +11,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
 from controller_fmu.parking.map.landmark import (
     Landmark,
@@ -61,14 +62,9 @@ class SideEnding(IntEnum):
 
 
 class BoundaryRun(NamedTuple):
-    """Boundary points in a row: how many, sums relative to the first of them, the first and the last."""
+    """Boundary points in a row: sums relative to the first of them, the first and the last."""
 
-    n: int = 0
-    x: float = 0.0
-    y: float = 0.0
-    xx: float = 0.0
-    xy: float = 0.0
-    yy: float = 0.0
+    sums: PointSums = PointSums()
     first: Point = Point(0.0, 0.0)
     last: Point = Point(0.0, 0.0)
     sensor: SensorPose = SensorPose()
@@ -138,7 +134,7 @@ def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
 
 def is_over(run: BoundaryRun, status: int, point: Point, measured: float, variance: float) -> bool:
     """Return whether a run has ended with a reading whose boundary point is ``point``; ``variance`` [m2] of ranges."""
-    if run.n == 0:
+    if run.sums.n == 0:
         return False
     if status == ReadingStatus.NO_ECHO:
         return run.lost + 1 >= MAX_LOST
@@ -148,7 +144,7 @@ def is_over(run: BoundaryRun, status: int, point: Point, measured: float, varian
     dy = point.y - run.last.y
     if dx * dx + dy * dy > MAX_SPACING * MAX_SPACING:
         return True
-    if run.n < 3:
+    if run.sums.n < 3:
         return False
     line = line_of(run, variance)
     off = offset_of(line, point.x, point.y)
@@ -161,35 +157,22 @@ def next_run(
 ) -> BoundaryRun:
     """Return a run after a reading at ``measured`` [m], or the one that begins after it is ``over``."""
     if status != ReadingStatus.ECHO:
-        return BoundaryRun(range=NO_HIT) if over or run.n == 0 else run._replace(lost=run.lost + 1)
-    if over or run.n == 0:
+        return BoundaryRun(range=NO_HIT) if over or run.sums.n == 0 else run._replace(lost=run.lost + 1)
+    if over or run.sums.n == 0:
         begun = BoundaryRun(sensor=sensor, begins=side_ending(measured, run.range))
         return with_point(begun, point, measured)
     dx = point.x - run.last.x
     dy = point.y - run.last.y
-    if run.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
+    if run.sums.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
         return run._replace(lost=0)
     return with_point(run, point, measured)
 
 
 def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
     """Return a run with one more point, of an echo at ``measured`` [m]."""
-    first = run.first if run.n > 0 else point
-    dx = point.x - first.x
-    dy = point.y - first.y
-    return BoundaryRun(
-        run.n + 1,
-        run.x + dx,
-        run.y + dy,
-        run.xx + dx * dx,
-        run.xy + dx * dy,
-        run.yy + dy * dy,
-        first,
-        point,
-        run.sensor,
-        measured,
-        run.begins,
-    )
+    first = run.first if run.sums.n > 0 else point
+    sums = add_point(run.sums, point.x - first.x, point.y - first.y)
+    return run._replace(sums=sums, first=first, last=point, range=measured, lost=0)
 
 
 def side_ending(inner: float, outer: float) -> int:
@@ -201,27 +184,24 @@ def side_ending(inner: float, outer: float) -> int:
 
 def line_of(run: BoundaryRun, variance: float) -> Landmark:
     """Return the line through a run's points by least squares across it; ``variance`` [m2] of a point."""
-    n = float(max(run.n, 1))
-    x = run.x / n
-    y = run.y / n
-    xx = run.xx - n * x * x
-    xy = run.xy - n * x * y
-    yy = run.yy - n * y * y
-    heading = 0.5 * math.atan2(2.0 * xy, xx - yy)
-    along = 0.5 * (xx + yy + math.sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy))
+    points = about_mean(run.sums)
+    difference = points.xx - points.yy
+    heading = 0.5 * math.atan2(2.0 * points.xy, difference)
+    root = math.sqrt(difference * difference + 4.0 * points.xy * points.xy)
+    along = 0.5 * (points.xx + points.yy + root)
     nx = -math.sin(heading)
     ny = math.cos(heading)
-    across = variance / n
+    across = variance / float(max(points.n, 1))
     return Landmark(
         type=LandmarkType.SEGMENT,
-        x=run.first.x + x,
-        y=run.first.y + y,
+        x=run.first.x + points.x,
+        y=run.first.y + points.y,
         heading=heading,
         xx=across * nx * nx,
         xy=across * nx * ny,
         yy=across * ny * ny,
         hh=variance / max(along, variance),
-        confirmations=run.n,
+        confirmations=run.sums.n,
     )
 
 
@@ -231,7 +211,7 @@ def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, varian
     The end towards the foot of the perpendicular is known unless hidden: there the echoes become a corner's. The other
     end is known where nothing else came nearer.
     """
-    if run.n < MIN_POINTS:
+    if run.sums.n < MIN_POINTS:
         return Landmark()
     line = line_of(run, variance)
     if offset_of(line, sensor.x, sensor.y) < 0.0:

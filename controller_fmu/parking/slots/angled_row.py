@@ -4,13 +4,14 @@ In that frame the cars stand as in a perpendicular row, but the road has a slope
 nearest to the road, and parts of the end and of the flank that meet there. The sides give the direction modulo a right
 angle; which of the two is the flank's follows from the log-likelihood of how long both are, of how far apart the cars
 stand, and of what was observed free where the car's body would be. The corners that stand out most are on one line,
-the row's: what lies deeper is no car of the row.
+the road's: a row is angled whose sides are oblique to that line. What lies deeper is no car of the row.
 """
 
 import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.free_space import Ray, is_free
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
@@ -23,7 +24,9 @@ from controller_fmu.parking.slots.candidate import (
     CAR_WIDTH,
     CAR_WIDTH_SIGMA,
     LOG_TEN,
+    MAX_CAR,
     MAX_POST,
+    is_too_short_for_car,
     length_log_likelihood,
     row_point,
 )
@@ -36,9 +39,8 @@ from controller_fmu.parking.slots.row import (
     NO_MEMBER,
     RowMember,
     SlotRow,
-    side_as_member,
+    with_member,
 )
-from modelkit.geometry import Point
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -49,28 +51,16 @@ LINE_DEPTH = 0.7
 LINE_LENGTH = 2.0
 """Corners that tell the line's direction lie at least so far apart [m]: they are of two cars."""
 POST_WEIGHT = 0.2
-"""A corner without a side speaks for the line as so much [m] of a side does."""
+"""A corner without a side, or a side whose end is not known, speaks for the line as so much [m] of a side does."""
 BODY_DEPTHS = (0.1, 0.25, 0.4, 0.55, 0.7)
 BODY_FRACTIONS = (0.3, 0.7)
 """Points of a car's body at these fractions of its length and width."""
-FREE_BODY = 1.0
 MAX_FREE_BODY = 5
-"""Log of the likelihood of a point of a body that was observed free, of so many at most."""
+"""Each point of a body that was observed free makes a car e times less likely, so many points at most."""
 POST_WIDTH = 0.4
 """Of a pillar [m]."""
 POST_GAP = 0.2
 """What stands farther [m] beside a car's flank is none of its corners: twice what the ends of sides are off."""
-
-
-class ObliqueSides(NamedTuple):
-    """What speaks for an angled row on one side of the road."""
-
-    heading: float = 0.0
-    """Direction [rad] of the sides against the road, modulo a right angle."""
-    length: float = 0.0
-    """Of all oblique sides [m]."""
-    along: float = 0.0
-    """Of all sides along the road [m]."""
 
 
 class RoadCorner(NamedTuple):
@@ -78,23 +68,36 @@ class RoadCorner(NamedTuple):
 
     along: float = 0.0
     deep: float = 0.0
+    heading: float = 0.0
+    """Of the side against the vehicle's path [rad], and the gate [rad2] of its square error."""
+    gate: float = 0.0
     length: float = 0.0
     """Of the side [m]; 0 of a point."""
-    is_flank: bool = False
     is_complete: bool = False
     """The side's other end has been observed, too."""
-    tilt: float = 0.0
-    """How far the side is turned against the frame [rad]."""
     sigma: float = 0.0
     weight: float = 0.0
     """How much it speaks for the row's line; 0: none."""
+    is_flank: bool = False
+    """It leads into the slot rather than across it."""
+    tilt: float = 0.0
+    """How far the side is turned against the frame [rad]."""
 
 
-class CornerLine(NamedTuple):
+class RoadLine(NamedTuple):
     """The line that a row's corners are on, in its frame: deep = at + slope along."""
 
     slope: float
     at: float
+
+
+class CarSides(NamedTuple):
+    """The longest sides of a car that meet at its corner at the road, and the last corner beside it [m]."""
+
+    flank: RoadCorner = RoadCorner()
+    """Weight 0: none; a point may be of either side."""
+    front: RoadCorner = RoadCorner()
+    last: float = NO_MEMBER
 
 
 class AngledRow(NamedTuple):
@@ -108,67 +111,115 @@ def find_angled_row(
     landmarks: tuple[Landmark, ...], rays: tuple[Ray, ...], vehicle: Pose, side: float, params: MappingParams
 ) -> SlotRow:
     """Return the angled row on one side (1 left, -1 right) of a vehicle that drives along it; empty: there is none."""
-    sides = oblique_sides(landmarks, vehicle, side, params)
-    if sides.length <= sides.along:
+    corners = _corners(landmarks, vehicle, side, params)
+    line = _line_of(corners, side)
+    sides = _side_heading(corners, line)
+    road = side * math.atan(line.slope)
+    if abs(_square_angle(sides - road)) < MAX_TILT:
         return SlotRow(vehicle, side)
-    into = sides.heading - 0.5 * PI if side < 0.0 else sides.heading
-    forward = _row_into(vehicle, side, into)
-    backward = _row_into(vehicle, side, into + side * 0.5 * PI)
-    forwards = _row_of(_corners(landmarks, forward, vehicle, params), rays, forward, 1.0)
-    backwards = _row_of(_corners(landmarks, backward, vehicle, params), rays, backward, -1.0)
+    into = sides - 0.5 * PI if side < 0.0 else sides
+    forwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into, 1.0)
+    backwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into + side * 0.5 * PI, -1.0)
     ratio = forwards.log_likelihood - backwards.log_likelihood
     if abs(ratio) < LOG_TEN:
         return SlotRow(vehicle, side)
     return forwards.row if ratio > 0.0 else backwards.row
 
 
-def _row_into(vehicle: Pose, side: float, into: float) -> SlotRow:
-    """Return an empty row whose slots lead ``into`` [rad] against the vehicle's path."""
-    turn = into - side * 0.5 * PI
-    return SlotRow(vehicle._replace(heading=vehicle.heading + turn), side, slope=-math.tan(turn))
+def _square_angle(angle: float) -> float:
+    """Return an angle [rad] modulo a right angle, without it at most half of one."""
+    return 0.25 * wrap_angle(4.0 * angle)
 
 
-def oblique_sides(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> ObliqueSides:
-    """Return the mean direction [rad] of the sides oblique to the road on one ``side`` (1, -1) of ``vehicle``."""
-    sine = 0.0
-    cosine = 0.0
-    oblique = 0.0
-    along = 0.0
+def _corners(
+    landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams
+) -> tuple[RoadCorner, ...]:
+    """Return the corners at the road of sides and points beside the vehicle, in its frame."""
+    corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
     for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
-        if _is_oblique(landmark, vehicle, side, params):
-            weight = 1.0 / (landmark.hh + ASKEW_VARIANCE)
-            angle = 4.0 * (landmark.heading - vehicle.heading)
-            sine += weight * math.sin(angle)
-            cosine += weight * math.cos(angle)
-            oblique += length_of(landmark)
-        else:
-            member = side_as_member(landmark, vehicle, side, params)
-            along += member.end - member.start
-    heading = 0.25 * math.atan2(sine, cosine) if oblique > 0.0 else 0.0
-    return ObliqueSides(heading if heading >= 0.0 else heading + 0.5 * PI, oblique, along)
+        length = length_of(landmark)
+        is_side = landmark.type == LandmarkType.SEGMENT and MIN_SIDE <= length < MAX_CAR
+        if is_confirmed(landmark, params) and (is_side or landmark.type == LandmarkType.POINT):
+            a = start_point(landmark)
+            b = end_point(landmark)
+            p = point_to_frame(a.x, a.y, vehicle)
+            q = point_to_frame(b.x, b.y, vehicle)
+            is_start = side * p.y < side * q.y
+            end = p if is_start else q
+            is_known = landmark.start_known if is_start else landmark.end_known
+            corner = RoadCorner(
+                end.x,
+                side * end.y,
+                landmark.heading - vehicle.heading,
+                params.gate * (landmark.hh + ASKEW_VARIANCE),
+                length,
+                landmark.start_known and landmark.end_known,
+                math.sqrt(landmark.xx + landmark.yy),
+                max(length, POST_WEIGHT) if is_known else POST_WEIGHT,
+            )
+            if corner.deep > 0.0:
+                corners = corners[1:] + (corner,)
+    return corners
 
 
-def _is_oblique(landmark: Landmark, vehicle: Pose, side: float, params: MappingParams) -> bool:
-    """Return whether a landmark is a side beside the road that runs neither along nor across it."""
-    if landmark.type != LandmarkType.SEGMENT or not is_confirmed(landmark, params) or length_of(landmark) < MIN_SIDE:
-        return False
-    off = abs(wrap_angle(4.0 * (landmark.heading - vehicle.heading))) / 4.0
-    return off > MAX_TILT and side * _nearest_end(landmark, vehicle, side).y > 0.0
+def _side_heading(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
+    """Return the direction [rad] against the path, modulo a right angle, that most sides on a line agree with."""
+    most = 0.0
+    heading = 0.0
+    for one in range(MAX_CORNERS):
+        total = 0.0
+        sine = 0.0
+        cosine = 0.0
+        for number in range(MAX_CORNERS):
+            corner = corners[number]
+            off = _square_angle(corner.heading - corners[one].heading)
+            agrees = off * off < corner.gate + corners[one].gate
+            if corner.length > 0.0 and _is_on_line(corner, line) and agrees:
+                total += corner.length
+                sine += math.sin(4.0 * corner.heading) / corner.gate
+                cosine += math.cos(4.0 * corner.heading) / corner.gate
+        if corners[one].length > 0.0 and total > most:
+            most = total
+            heading = 0.25 * math.atan2(sine, cosine)
+    return heading if heading >= 0.0 else heading + 0.5 * PI
 
 
-def _nearest_end(landmark: Landmark, vehicle: Pose, side: float) -> Point:
-    """Return the end of a landmark that is nearest to the road, in the frame of the vehicle."""
-    a = start_point(landmark)
-    b = end_point(landmark)
-    p = point_to_frame(a.x, a.y, vehicle)
-    q = point_to_frame(b.x, b.y, vehicle)
-    return p if side * p.y < side * q.y else q
+def _row_into(
+    corners: tuple[RoadCorner, ...], line: RoadLine, rays: tuple[Ray, ...], row: SlotRow, into: float, lean: float
+) -> AngledRow:
+    """Return the row whose slots lead ``into`` [rad] against the path, forward (``lean`` 1) or backward (-1).
+
+    Corners and line are in the frame of the vehicle, as ``row`` is.
+    """
+    turn = into - row.side * 0.5 * PI
+    slope = math.tan(row.side * math.atan(line.slope) - turn)
+    rotated: tuple[RoadCorner, ...] = tuple(_rotate(corner, turn, row.side) for corner in corners)
+    foot = _rotate(RoadCorner(deep=line.at), turn, row.side)
+    line = RoadLine(row.side * slope, foot.deep - row.side * slope * foot.along)
+    row = row._replace(frame=row.frame._replace(heading=row.frame.heading + turn), slope=slope)
+    return _row_of(rotated, line, rays, row, lean)
 
 
-def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow, lean: float) -> AngledRow:
+def _rotate(corner: RoadCorner, turn: float, side: float) -> RoadCorner:
+    """Return a corner in a frame turned by ``turn`` [rad]; a side that is oblique to it does not count."""
+    sin = side * math.sin(turn)
+    cos = math.cos(turn)
+    off = corner.heading - turn
+    tilt = _square_angle(off) if corner.length > 0.0 else 0.0
+    return corner._replace(
+        along=corner.along * cos + corner.deep * sin,
+        deep=corner.deep * cos - corner.along * sin,
+        weight=corner.weight if tilt * tilt <= corner.gate else 0.0,
+        is_flank=corner.length > 0.0 and abs(math.sin(off)) > abs(math.cos(off)),
+        tilt=tilt,
+    )
+
+
+def _row_of(
+    corners: tuple[RoadCorner, ...], line: RoadLine, rays: tuple[Ray, ...], row: SlotRow, lean: float
+) -> AngledRow:
     """Return a row whose slots lead forward (``lean`` 1) or backward (-1), from ahead to behind."""
-    line = _line_of(corners, row.side * row.slope)
     total = 0.0
     bay = NO_MEMBER
     before = NO_MEMBER
@@ -177,52 +228,52 @@ def _row_of(corners: tuple[RoadCorner, ...], rays: tuple[Ray, ...], row: SlotRow
     for _ in range(MAX_MEMBERS):
         if first > -NO_MEMBER:
             behind = _next_corner(corners, line, first - 0.5 * CAR_WIDTH)
-            car = _car_of(corners, line, first, lean, row.side)
+            sides = _sides_of_car(corners, line, first)
+            car = _car_of(sides, first, lean, row.side)
             free = _free_body(row, car, rays)
             pitch = before - first if lean > 0.0 else first - behind
-            if _longest_side(corners, line, first) > MAX_POST:
-                total += _side_log_likelihood(corners, line, first) - FREE_BODY * min(free, MAX_FREE_BODY)
-                bay = min(bay, last_car - car.start)
-                last_car = car.start
-            elif free > 1 or pitch < CAR_WIDTH + MEMBER_GAP:
+            has_side = max(sides.flank.length, sides.front.length) > MAX_POST
+            is_post = not has_side and free > 1
+            is_narrow = pitch < CAR_WIDTH + MEMBER_GAP
+            if has_side:
+                total += _side_log_likelihood(sides.flank, CAR_LENGTH, CAR_LENGTH_SIGMA)
+                total += _side_log_likelihood(sides.front, CAR_WIDTH, CAR_WIDTH_SIGMA)
+                total -= min(free, MAX_FREE_BODY)
+                edge = car.end if lean > 0.0 else car.start
+                bay = min(bay, last_car - edge)
+                last_car = edge
+            elif is_post or is_narrow:
                 car = _as_post(car, lean)
+            total += -LOG_TEN if is_post else _bay_log_likelihood(min(pitch, BAY_WIDTH))
             before = first
             first = behind
-            row = row._replace(
-                members=tuple(car if number == row.used else row.members[number] for number in range(MAX_MEMBERS)),
-                used=row.used + 1,
-            )
+            row = with_member(row, row.used, car)._replace(used=row.used + 1)
     line = _line_through(row, line, lean)
     row = row._replace(slope=row.side * line.slope, front_at=line.at)
-    total += length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA) if bay < 0.5 * NO_MEMBER else 0.0
-    return AngledRow(row, total)
+    return AngledRow(row, total + (_bay_log_likelihood(max(bay, BAY_WIDTH)) if bay < 0.5 * NO_MEMBER else 0.0))
 
 
-def _line_through(row: SlotRow, line: CornerLine, lean: float) -> CornerLine:
+def _bay_log_likelihood(bay: float) -> float:
+    """Return the log-likelihood of a distance [m] of two cars in a row: of ten, one is a post, or an empty bay."""
+    return max(length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA), -LOG_TEN)
+
+
+def _line_through(row: SlotRow, line: RoadLine, lean: float) -> RoadLine:
     """Return the line through the corners at the road of a row's cars, by least squares; of one car along ``line``."""
-    n = 0.0
-    sx = 0.0
-    sy = 0.0
-    sxx = 0.0
-    sxy = 0.0
+    sums = PointSums()
     for number in range(MAX_MEMBERS):
         car = row.members[number]
         if number < row.used and car.start_length == 0.0 and car.end_length == 0.0:
-            x = car.end if lean > 0.0 else car.start
-            n += 1.0
-            sx += x
-            sy += car.front
-            sxx += x * x
-            sxy += x * car.front
-    if n == 0.0:
+            sums = add_point(sums, car.end if lean > 0.0 else car.start, car.front)
+    corners = about_mean(sums)
+    if corners.n == 0:
         return line
-    spread = sxx - sx * sx / n
-    is_known = spread > 0.5 * LINE_LENGTH * LINE_LENGTH
-    slope = (sxy - sx * sy / n) / spread if is_known else line.slope
-    return CornerLine(slope, (sy - slope * sx) / n)
+    is_known = corners.xx > 0.5 * LINE_LENGTH * LINE_LENGTH
+    slope = corners.xy / corners.xx if is_known else line.slope
+    return RoadLine(slope, corners.y - slope * corners.x)
 
 
-def _next_corner(corners: tuple[RoadCorner, ...], line: CornerLine, last: float) -> float:
+def _next_corner(corners: tuple[RoadCorner, ...], line: RoadLine, last: float) -> float:
     """Return where [m] the next corner on the row's line behind ``last`` is; -``NO_MEMBER``: there is none."""
     first = -NO_MEMBER
     for number in range(MAX_CORNERS):
@@ -231,145 +282,91 @@ def _next_corner(corners: tuple[RoadCorner, ...], line: CornerLine, last: float)
     return first
 
 
-def _corners(
-    landmarks: tuple[Landmark, ...], row: SlotRow, vehicle: Pose, params: MappingParams
-) -> tuple[RoadCorner, ...]:
-    """Return the corners at the road of oblique sides and points beside the vehicle."""
-    corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
-    for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
-        off = landmark.heading - row.frame.heading
-        turned = 0.25 * wrap_angle(4.0 * off)
-        is_side = _is_oblique(landmark, vehicle, row.side, params)
-        is_side = is_side and turned * turned < params.gate * (ASKEW_VARIANCE + landmark.hh)
-        is_point = landmark.type == LandmarkType.POINT and is_confirmed(landmark, params)
-        end = _nearest_end(landmark, vehicle, row.side)
-        if is_side or (is_point and row.side * end.y > 0.0):
-            at = point_to_frame(end.x, end.y, Pose(0.0, 0.0, row.frame.heading - vehicle.heading))
-            corner = RoadCorner(
-                at.x,
-                row.side * at.y,
-                length_of(landmark),
-                is_side and abs(math.sin(off)) > abs(math.cos(off)),
-                landmark.start_known and landmark.end_known,
-                turned if is_side else 0.0,
-                math.sqrt(landmark.xx + landmark.yy),
-                max(length_of(landmark), POST_WEIGHT),
-            )
-            corners = corners[1:] + (corner,)
-    return corners
-
-
-def _line_of(corners: tuple[RoadCorner, ...], slope: float) -> CornerLine:
-    """Return the line through two corners that most others are on; of a single car one of the ``slope`` given."""
-    best = CornerLine(slope, NO_MEMBER)
+def _line_of(corners: tuple[RoadCorner, ...], side: float) -> RoadLine:
+    """Return the line through two corners that most others are on, and few before; of a single car along the path."""
+    best = RoadLine(0.0, NO_MEMBER)
     for number in range(MAX_CORNERS):
         if corners[number].weight > 0.0:
-            best = best._replace(at=min(best.at, corners[number].deep - slope * corners[number].along))
+            best = best._replace(at=min(best.at, corners[number].deep))
     most = 0.0
     for one in range(MAX_CORNERS):
         for other in range(MAX_CORNERS):
             a = corners[one]
             b = corners[other]
             if a.weight > 0.0 and b.weight > 0.0 and a.along - b.along > LINE_LENGTH:
-                steep = (a.deep - b.deep) / (a.along - b.along)
-                line = CornerLine(steep, a.deep - steep * a.along)
-                if abs(math.atan(steep) - math.atan(slope)) < MAX_TILT:
+                slope = (a.deep - b.deep) / (a.along - b.along)
+                line = RoadLine(slope, a.deep - slope * a.along)
+                if abs(math.atan(slope)) < MAX_TILT:
                     score = 0.0
                     for number in range(MAX_CORNERS):
-                        score += corners[number].weight * max(1.0 - _off_line(corners[number], line) / LINE_DEPTH, 0.0)
+                        score += _line_score(corners[number], line, side)
                     if score > most:
                         most = score
                         best = line
     return best
 
 
-def _off_line(corner: RoadCorner, line: CornerLine) -> float:
-    """Return how far [m] a corner is off a row's line."""
-    return abs(corner.deep - line.at - line.slope * corner.along) / math.sqrt(1.0 + line.slope * line.slope)
+def _line_score(corner: RoadCorner, line: RoadLine, side: float) -> float:
+    """Return how much a corner speaks for a line, and the other end of its side too; one before the line against it."""
+    off = _off_line(corner, line)
+    if off < -LINE_DEPTH:
+        return -corner.weight
+    near = 1.0 - abs(off) / LINE_DEPTH
+    far = near - corner.length * abs(math.sin(corner.heading - side * math.atan(line.slope))) / LINE_DEPTH
+    return corner.weight * (max(near, 0.0) + max(far, 0.0))
 
 
-def _is_on_line(corner: RoadCorner, line: CornerLine) -> bool:
+def _off_line(corner: RoadCorner, line: RoadLine) -> float:
+    """Return how far [m] a corner is behind a row's line."""
+    return (corner.deep - line.at - line.slope * corner.along) / math.sqrt(1.0 + line.slope * line.slope)
+
+
+def _is_on_line(corner: RoadCorner, line: RoadLine) -> bool:
     """Return whether a corner is one of a car in the row, or of a post."""
-    return corner.weight > 0.0 and _off_line(corner, line) < LINE_DEPTH
+    return corner.weight > 0.0 and abs(_off_line(corner, line)) < LINE_DEPTH
 
 
-def _is_of_car(corner: RoadCorner, line: CornerLine, first: float) -> bool:
-    """Return whether a corner is of the car, and what stands beside it, whose foremost corner is at ``first``."""
-    return _is_on_line(corner, line) and first - 0.5 * CAR_WIDTH < corner.along <= first
+def _sides_of_car(corners: tuple[RoadCorner, ...], line: RoadLine, first: float) -> CarSides:
+    """Return the sides of the car, and what stands beside it, whose foremost corner is at ``first``."""
+    sides = CarSides()
+    for corner in corners:
+        if _is_on_line(corner, line) and first - 0.5 * CAR_WIDTH < corner.along <= first:
+            is_front = corner.length > 0.0 and not corner.is_flank
+            if not is_front and (sides.flank.weight == 0.0 or corner.length > sides.flank.length):
+                sides = sides._replace(flank=corner)
+            if not corner.is_flank and (sides.front.weight == 0.0 or corner.length > sides.front.length):
+                sides = sides._replace(front=corner)
+            sides = sides._replace(last=min(sides.last, corner.along))
+    return sides
 
 
-def _longest_side(corners: tuple[RoadCorner, ...], line: CornerLine, first: float) -> float:
-    longest = 0.0
-    for number in range(MAX_CORNERS):
-        if _is_of_car(corners[number], line, first):
-            longest = max(longest, corners[number].length)
-    return longest
+def _side_log_likelihood(corner: RoadCorner, mean: float, sigma: float) -> float:
+    """Return the log-likelihood of a side where cars have one of ``mean`` length [m]."""
+    return length_log_likelihood(corner.length, _is_whole(corner), mean, sigma) if corner.length > MAX_POST else 0.0
 
 
-def _side_log_likelihood(corners: tuple[RoadCorner, ...], line: CornerLine, first: float) -> float:
-    """Return the log-likelihood of the lengths of a car's sides."""
-    total = 0.0
-    for number in range(MAX_CORNERS):
-        corner = corners[number]
-        if _is_of_car(corner, line, first) and corner.length > MAX_POST:
-            mean = CAR_LENGTH if corner.is_flank else CAR_WIDTH
-            sigma = CAR_LENGTH_SIGMA if corner.is_flank else CAR_WIDTH_SIGMA
-            if corner.is_complete:
-                total += length_log_likelihood(corner.length, True, mean, sigma)
-            else:
-                total += visible_log_likelihood((corner.length - mean) / sigma)
-    return total
+def _is_whole(corner: RoadCorner) -> bool:
+    """Return whether a side was observed from end to end: none of a car is shorter than that is wide."""
+    return corner.is_complete and not is_too_short_for_car(corner.length)
 
 
-def visible_log_likelihood(deviation: float) -> float:
-    """Return the log-probability that a side is no shorter than seen, ``deviation`` [sigma] above the mean.
-
-    Q(z) = exp(-0.717 z - 0.416 z2) / 2 for z >= 0.
-    """
-    z = abs(deviation)
-    tail = 0.5 * math.exp(-0.717 * z - 0.416 * z * z)
-    return max(math.log(tail if deviation > 0.0 else 1.0 - tail), -2.0 * LOG_TEN)
-
-
-def _car_of(corners: tuple[RoadCorner, ...], line: CornerLine, first: float, lean: float, side: float) -> RowMember:
-    """Return the car whose foremost corner is at ``first``: flank and front from the longest sides of each.
+def _car_of(sides: CarSides, first: float, lean: float, side: float) -> RowMember:
+    """Return the car whose foremost corner is at ``first``, by its sides.
 
     What stands beside it narrows the gap there. The far end of a front that is not seen in full is a car's width off.
     """
-    edge = first
-    beside = first if lean > 0.0 else NO_MEMBER
-    deep = NO_MEMBER
-    width = CAR_WIDTH
-    width_sigma = CAR_WIDTH_SIGMA
-    sigma = 0.0
-    tilt = 0.0
-    longest = -1.0
-    longest_flank = -1.0
-    longest_front = -1.0
-    for number in range(MAX_CORNERS):
-        corner = corners[number]
-        if _is_of_car(corner, line, first):
-            beside = beside if lean > 0.0 else min(beside, corner.along)
-            is_front = corner.length > 0.0 and not corner.is_flank
-            if corner.length > longest:
-                longest = corner.length
-                tilt = corner.tilt
-                sigma = corner.sigma
-            if not is_front and corner.length > longest_flank:
-                longest_flank = corner.length
-                edge = corner.along
-            if not corner.is_flank and corner.length > longest_front:
-                longest_front = corner.length
-                deep = corner.deep
-                width = corner.length if corner.is_complete and corner.length > MAX_POST else width
-                width_sigma = corner.sigma if corner.is_complete and corner.length > MAX_POST else width_sigma
-            deep = min(deep, corner.deep) if longest_front < 0.0 else deep
-    edge = beside if lean * (beside - edge) > POST_GAP or longest_flank < 0.0 else edge
-    turned = side * math.tan(tilt) * width
+    longer = sides.flank if sides.flank.length > sides.front.length else sides.front
+    beside = first if lean > 0.0 else sides.last
+    is_flank_known = sides.flank.weight > 0.0 and lean * (beside - sides.flank.along) <= POST_GAP
+    edge = sides.flank.along if is_flank_known else beside
+    deep = sides.front.deep if sides.front.weight > 0.0 else sides.flank.deep
+    is_whole = _is_whole(sides.front)
+    width = sides.front.length if is_whole else CAR_WIDTH
+    width_sigma = sides.front.sigma if is_whole else CAR_WIDTH_SIGMA
+    turned = side * math.tan(longer.tilt) * width
     if lean > 0.0:
-        return RowMember(edge - width, edge, deep, True, True, deep - turned, deep, width_sigma, sigma)
-    return RowMember(edge, edge + width, deep, True, True, deep, deep + turned, sigma, width_sigma)
+        return RowMember(edge - width, edge, deep, True, True, deep - turned, deep, width_sigma, longer.sigma)
+    return RowMember(edge, edge + width, deep, True, True, deep, deep + turned, longer.sigma, width_sigma)
 
 
 def _as_post(car: RowMember, lean: float) -> RowMember:

@@ -8,6 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.landmark import (
     MAX_LANDMARKS,
     Landmark,
@@ -157,11 +158,11 @@ def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: 
         if best_end <= -NO_MEMBER:
             return row
         last = best_end
-        row = _with_member(row, best)
+        row = _with_next(row, best)
     return row
 
 
-def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
+def _with_next(row: SlotRow, member: RowMember) -> SlotRow:
     """Return the row with a member farther behind; one that touches the last is joined to it."""
     at = row.used - 1
     joins = row.used > 0 and row.members[max(at, 0)].start - member.end < MEMBER_GAP
@@ -182,15 +183,13 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
             first.start_length,
             last.end_length,
         )
-        return row._replace(
-            members=tuple(joined if number == at else row.members[number] for number in range(MAX_MEMBERS))
-        )
-    if row.used >= MAX_MEMBERS:
-        return row
-    return row._replace(
-        members=tuple(member if number == row.used else row.members[number] for number in range(MAX_MEMBERS)),
-        used=row.used + 1,
-    )
+        return with_member(row, at, joined)
+    return with_member(row, row.used, member)._replace(used=row.used + 1) if row.used < MAX_MEMBERS else row
+
+
+def with_member(row: SlotRow, at: int, member: RowMember) -> SlotRow:
+    """Return the row with the member at the index ``at`` replaced."""
+    return row._replace(members=tuple(member if number == at else row.members[number] for number in range(MAX_MEMBERS)))
 
 
 def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> RowDirection:
@@ -256,22 +255,12 @@ def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], 
 
 def _line_direction(row: SlotRow) -> RowDirection:
     """Return the direction of the line through the middles of a row's sides; of a single one it is not known."""
-    n = 0.0
-    sx = 0.0
-    sy = 0.0
-    sxx = 0.0
-    sxy = 0.0
+    sums = PointSums()
     for number in range(MAX_MEMBERS):
+        member = row.members[number]
         if number < row.used:
-            member = row.members[number]
-            x = 0.5 * (member.start + member.end)
-            y = row.side * member.front
-            n += 1.0
-            sx += x
-            sy += y
-            sxx += x * x
-            sxy += x * y
-    spread = sxx - sx * sx / n if n > 0.0 else 0.0
-    if spread <= UNEVEN_SIGMA:
+            sums = add_point(sums, 0.5 * (member.start + member.end), row.side * member.front)
+    middles = about_mean(sums)
+    if middles.xx <= UNEVEN_SIGMA * UNEVEN_SIGMA:
         return RowDirection(0.0, PI)
-    return RowDirection(math.atan((sxy - sx * sy / n) / spread), UNEVEN_SIGMA / math.sqrt(spread))
+    return RowDirection(math.atan(middles.xy / middles.xx), UNEVEN_SIGMA / math.sqrt(middles.xx))

@@ -143,6 +143,17 @@ def test_echoes_of_a_face_at_the_boundary_of_the_cone_end_a_chain_of_a_slow_pass
         assert chain.used < 4, "four echoes make a landmark"
 
 
+def test_a_chain_refers_to_no_deleted_landmark() -> None:
+    """Both flank sensors measure the wall on the left: one side took the place of the other, then a car its place."""
+    wall = Box(0.0, 4.9, 0.0, 30.0, 1.8)
+    boxes = [wall, *(Box(x, -2.3, 0.0, 1.8, 4.6) for x in (-0.9, 4.05))]
+    local_map = LandmarkMap()
+    for _, believed, readings in drive_past(boxes, Pose(-9.0, 1.5, math.radians(5.0)), 18.0, 3):
+        local_map = update_map(local_map, readings, believed, CAR.ultrasonic, PARAMS)
+        for chain in local_map.chains:
+            assert chain.landmark < 0 or local_map.landmarks[chain.landmark].type != LandmarkType.NONE
+
+
 @pytest.mark.parametrize("lateral", [0.5, 1.0])
 def test_a_slow_pass_finds_both_cars(lateral: float) -> None:
     boxes = [Box(x, -2.3, 0.0, 1.8, 4.6) for x in (-0.9, 4.05)]

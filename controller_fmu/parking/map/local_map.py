@@ -118,6 +118,18 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
         local_map = local_map._replace(missed=missed)
     if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
+    return _without_deleted(local_map)
+
+
+def _without_deleted(local_map: LandmarkMap) -> LandmarkMap:
+    """Return the map whose chains refer to no deleted landmark: its place may be taken by another one."""
+    for number in range(SIDE_SENSORS):
+        chain = local_map.chains[number]
+        at = max(chain.landmark, 0)
+        if chain.landmark >= 0 and local_map.landmarks[at].type == LandmarkType.NONE:
+            local_map = local_map._replace(
+                chains=local_map.chains[:number] + (chain._replace(landmark=-1),) + local_map.chains[number + 1 :]
+            )
     return local_map
 
 

@@ -82,28 +82,72 @@ class Seen:
     def __init__(self, page: Any) -> None:
         self.console: list[str] = []
         self.requests: list[str] = []
-        page.on("console", lambda message: self.console.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: self.console.append(f"error: {error}"))
-        page.on("request", lambda request: self.requests.append(request.url))
+        self.listeners = {
+            "console": lambda message: self.console.append(f"{message.type}: {message.text}"),
+            "pageerror": lambda error: self.console.append(f"error: {error}"),
+            "request": lambda request: self.requests.append(request.url),
+        }
+        for event, listener in self.listeners.items():
+            page.on(event, listener)
+
+
+class BrowserPages:
+    """Empty pages of a browser, kept between tests: making one takes longer than loading most files."""
+
+    def __init__(self, browser: Any) -> None:
+        self.browser = browser
+        self.free: dict[str, list[Any]] = {}
+        """Options of the context, as text -> its pages that no test has now."""
+
+    def borrow(self, options: dict[str, Any], is_own: bool) -> Any:
+        """Return a page; ``is_own``: of a context that nobody had before."""
+        free = self.free.get(repr(options))
+        return free.pop() if free and not is_own else self.browser.new_context(**options).new_page()
+
+    def give_back(self, page: Any, options: dict[str, Any], seen: Seen) -> None:
+        """Leave the file, put size and pointer back, and keep the page for another test."""
+        for event, listener in seen.listeners.items():
+            page.remove_listener(event, listener)
+        page.set_viewport_size(options["viewport"])
+        page.mouse.move(0, 0)
+        page.goto("about:blank")
+        self.free.setdefault(repr(options), []).append(page)
+
+
+@pytest.fixture(scope="session")
+def browser_pages(browser: Any) -> BrowserPages:
+    return BrowserPages(browser)
 
 
 @pytest.fixture
-def show(browser: Any) -> Iterator[Any]:
-    """Open a page file: returns (page, what it did); closed after the test."""
-    contexts = []
+def show(browser_pages: BrowserPages) -> Iterator[Any]:
+    """Open a page file: returns (page, what it did); left after the test.
+
+    ``is_own``: in a context that no other test has, for one that changes the clock of its pages.
+    """
+    borrowed: list[tuple[Any, dict[str, Any], Seen, bool]] = []
 
     def opened(
-        path: Path, fragment: str = "", width: int = 1280, height: int = 900, is_scripted: bool = True, **options: Any
+        path: Path,
+        fragment: str = "",
+        width: int = 1280,
+        height: int = 900,
+        is_scripted: bool = True,
+        is_own: bool = False,
+        **options: Any,
     ) -> tuple[Any, Seen]:
-        context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        contexts.append(context)
-        page = context.new_page()
+        options["viewport"] = {"width": width, "height": height}
+        page = browser_pages.borrow(options, is_own)
         seen = Seen(page)
+        borrowed.append((page, options, seen, is_own))
         page.goto(path.as_uri() + fragment)
         if is_scripted:
             page.wait_for_selector("html[data-ready]", timeout=120_000)
         return page, seen
 
     yield opened
-    for context in contexts:
-        context.close()
+    for page, options, seen, is_own in borrowed:
+        if is_own:
+            page.context.close()
+        else:
+            browser_pages.give_back(page, options, seen)

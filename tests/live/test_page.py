@@ -17,7 +17,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
-from tests.live.person import drive, hurries_once, never_obeys, obeys, standing_clock
+from tests.live.person import drive, hurries_once, never_obeys, standing_clock
 
 scenarios_of = cache(page_scenarios)
 LARGEST_PAGE = 400_000
@@ -71,9 +71,15 @@ def apa_page(apa_file: Any, show: Any) -> Iterator[Any]:
     yield from watched(show, apa_file, "apa-parallel")
 
 
-def watched(show: Any, file: Any, scenario: Any) -> Iterator[Any]:
+@pytest.fixture
+def own_page(file: Any, show: Any) -> Iterator[Any]:
+    """A page whose clock a test may stop."""
+    yield from watched(show, file, "guo2015-case4", is_own=True)
+
+
+def watched(show: Any, file: Any, scenario: Any, is_own: bool = False) -> Iterator[Any]:
     """Show a page that, when its test is over, has reported nothing and asked for nothing from outside."""
-    shown, seen = show(file, f"#s={scenario}", 1440, 900)
+    shown, seen = show(file, f"#s={scenario}", 1440, 900, is_own=is_own)
     yield shown
     assert seen.console == []
     assert [url for url in seen.requests if not url.startswith(("file:", "data:", "blob:"))] == []
@@ -161,26 +167,20 @@ def test_what_the_laws_pages_say_to_try_comes_out_so(page: Any, apa_page: Any) -
         assert [tuple(item) for item in found] == [item[2:] for item in to_try]
 
 
-def test_keys_drive_to_parked(page: Any) -> None:
-    page.select_option("#scenario", "guo2015-case4-105")
-    found = drive(page, obeys)
-    assert (found["outcome"], found["byHand"]) == ("parked", True)
-    assert page.text_content("#drive-said") == "You: parked"
-
-
-def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page: Any) -> None:
-    found = drive(page, hurries_once)
-    phases = page.evaluate("() => window.live.drive.history.spans('controller.phase').map((span) => span.value)")
+def test_who_is_too_fast_once_is_brought_back_by_point_tracking(own_page: Any) -> None:
+    found = drive(own_page, hurries_once)
+    phases = own_page.evaluate("() => window.live.drive.history.spans('controller.phase').map((span) => span.value)")
     assert PHASES.index("TO_Q2") in phases
     assert found["numbers"]["manoeuvres"] >= 2
-    assert found["outcome"] == "parked"
+    assert (found["outcome"], found["byHand"]) == ("parked", True)
+    assert own_page.text_content("#drive-said") == "You: parked"
 
 
-def test_who_never_obeys_fails_with_a_reason(page: Any) -> None:
-    found = drive(page, never_obeys)
+def test_who_never_obeys_fails_with_a_reason(own_page: Any) -> None:
+    found = drive(own_page, never_obeys)
     assert found["outcome"] == "failed"
     assert found["reason"] == "not_stopping"
-    assert "You: failed: not stopping" in page.text_content("#drive-said")
+    assert "You: failed: not stopping" in own_page.text_content("#drive-said")
 
 
 PADS = """() => {
@@ -195,7 +195,7 @@ HELD = "() => ({ ...live.driver.pedal, lever: live.driver.lever, drives: live.dr
 
 
 def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file: Any, show: Any) -> None:
-    page, seen = show(file, "#s=guo2015-case4-105", 390, 844, has_touch=True, is_mobile=True)
+    page, seen = show(file, "#s=guo2015-case4-105", 390, 844, is_own=True, has_touch=True, is_mobile=True)
     page.evaluate(PADS)
     standing_clock(page)
     box = page.locator("#accelerator").bounding_box()

@@ -13,7 +13,7 @@ from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import WARNINGS, ZIG, CModel, compiled
 
 SCENARIOS = {
-    "guo2015-case4-105": (),
+    "guo2015-case4-105": ("stop_time=10",),
     "apa-parallel-walls": (),
     "zhang2022-double-track": ("stop_time=10",),
     "hsic-straight": ("stop_time=12",),

@@ -16,6 +16,7 @@ from fmus.native.sources import fmu_sources, unit_name
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.export.system_of import one_model
 from tests.fmi.built import native_fmu_of
+from tests.fmi.conftest import ALL_MODELS, MODELS
 from tests.fmi.elf import dynamic
 from tests.fmi.raw import OK, Library
 from tests.fmi.raw3 import Library3
@@ -152,8 +153,11 @@ def test_no_random_call_crashes(host: Any, native_fmus: Any, any_model: Any, tmp
     assert functions == len(dynamic(library.file.read_bytes())[2]), "all that the library exports"
 
 
-def test_no_random_call_of_fmi_3_crashes(host3: Any, fmi3_fmus: Any, any_model: Any, tmp_path: Path) -> None:
-    library = Library3(fmi3_fmus[any_model.name], tmp_path)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in MODELS else pytest.mark.release) for name in ALL_MODELS]
+)
+def test_no_random_call_of_fmi_3_crashes(host3: Any, fmi3_fmus: Any, name: str, tmp_path: Path) -> None:
+    library = Library3(fmi3_fmus[name], tmp_path)
     text = run(host3, library.file, library.description.guid, 1, 30_000, timeout=120)
     calls, refused, messages, functions = (int(word.split()[0]) for word in text.split(", "))
     assert calls == 30_000

@@ -120,7 +120,7 @@ def test_the_command_prints_the_tables_and_rows_come_back(tmp_path: Path, capsys
     printed = capsys.readouterr().out
     assert "touched something" in printed
     assert "slot found" in printed
-    assert main(["replay", str(tmp_path / "apa-grid.parquet"), "--row", "1", "--no-page"]) == 0
+    assert main(["replay", str(tmp_path / "apa-grid.parquet"), "--row", "1", "--no-page", "--fmus", "native"]) == 0
     assert "same bits as in the table" in capsys.readouterr().out
 
 

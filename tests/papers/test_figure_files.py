@@ -9,11 +9,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from orchestrator.cli import main
 from orchestrator.presentation.drawing.run_figure import style_context
-from orchestrator.studies.papers.drive import drive
 from orchestrator.studies.papers.figure_files import write_figures
 from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.studies.papers.papers import papers
-from orchestrator.studies.papers.result import CONCLUSION, Reproduction, Row, not_tested
+from orchestrator.studies.papers.result import CONCLUSION, Drive, Reproduction, Row, not_tested
 from orchestrator.studies.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
 
 ROWS = [
@@ -33,8 +32,8 @@ def test_every_figure_has_a_counterpart_or_a_reason() -> None:
     assert len({item.name for item in FIGURES}) == len(FIGURES)
 
 
-def test_figures_of_a_paper_are_written_with_data_and_commands(tmp_path: Path) -> None:
-    write_figures("zhang2022", drive, tmp_path, dpi=40)
+def test_figures_of_a_paper_are_written_with_data_and_commands(by_default: Drive, tmp_path: Path) -> None:
+    write_figures("zhang2022", by_default, tmp_path, dpi=40)
     for entry in json.loads((tmp_path / "zhang2022-figures.json").read_text(encoding="utf-8")):
         assert bool(entry["files"]) == bool(entry["command"])
         for name in entry["files"]:

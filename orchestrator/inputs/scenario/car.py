@@ -7,13 +7,14 @@
 """
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from modelkit.car import Car
 from modelkit.variables import flatten, variables
 from orchestrator.inputs.scenario.commonroad import commonroad_car, is_commonroad
-from orchestrator.inputs.scenario.files import find_file
+from orchestrator.inputs.scenario.files import LIBRARY, find_file
 from orchestrator.inputs.scenario.flat_names import FlatLayer, flatten_layer, merge_flat
 from orchestrator.inputs.text.errors import BadInput, format_value, suggestion_or_choices
 from orchestrator.inputs.text.quantities import scalar
@@ -63,7 +64,8 @@ def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> Vehic
                 raise BadInput(
                     f"{format_value(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}"
                 )
-            car = _car_in(find_file(base, "cars", "car", beside), base)
+            found = find_file(base, "cars", "car", beside)
+            car = (_shipped_car if found.is_relative_to(LIBRARY) else _car_in)(found, base)
         new = _numbers(changes, file)
         car = car._replace(reported=merge_flat(car.reported, new.values, new.arrays))
     return car
@@ -91,6 +93,10 @@ def _car_in(file: Path, name: str) -> VehicleDefinition:
             raise BadInput(f"unknown{hint}", file=file, key=key)
     vehicle: Layer = ({"vehicle": content.get("vehicle")}, file)
     return VehicleDefinition(name, _numbers(content.get("car") or {}, file).values, (vehicle,))
+
+
+_shipped_car = cache(_car_in)
+"""Of a file that does not change while this process lives; nobody changes its layers."""
 
 
 def _numbers(section: object, file: object) -> FlatLayer:

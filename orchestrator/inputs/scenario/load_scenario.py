@@ -1,6 +1,7 @@
 """From a name or a file to a complete scenario: bases, car, ``--set`` values, limits, all merged and checked."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,7 +10,7 @@ from pydantic import ValidationError
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.inputs.scenario.car import CAR, Layer, vehicle_definition, with_said
-from orchestrator.inputs.scenario.files import find_file, library_names
+from orchestrator.inputs.scenario.files import LIBRARY, find_file, library_names
 from orchestrator.inputs.scenario.flat_names import flatten_layer, flatten_section, merge_flat, merge_nested
 from orchestrator.inputs.scenario.models import MODELS, models_for
 from orchestrator.inputs.scenario.obstacle_map import map_of
@@ -262,11 +263,18 @@ def requirements_of(given: object, folder: Path, file: object = None) -> list[di
     for item in given:
         if isinstance(item, str):
             file = find_file(item, "requirements", "set of requirements", folder)
-            entries = read_requirements(file)
-            result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
+            result += [*_shipped_entries(file)] if file.is_relative_to(LIBRARY) else _entries_in(file)
         else:
             result.append(item)
     return result
+
+
+def _entries_in(file: Path) -> list[dict[str, Any]]:
+    return [entry.model_dump(by_alias=True, exclude_none=True) for entry in read_requirements(file)]
+
+
+_shipped_entries = cache(_entries_in)
+"""Of a set that does not change while this process lives; nobody changes its entries."""
 
 
 def _set_layer(sets: list[str], instances: Iterable[str]) -> dict[str, Any]:

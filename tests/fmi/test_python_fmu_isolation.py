@@ -118,7 +118,7 @@ def slow_motion(path: Any) -> Any:
         return host.get(["oscillators[1].position"])[0]
 
 
-@pytest.mark.parametrize("name", ["Vehicle", "Controller"])
+@pytest.mark.parametrize("name", ["Vehicle", pytest.param("Controller", marks=pytest.mark.release)])
 def test_a_different_build_of_the_real_models_beside_the_first(python_fmus: Any, tmp_path: Path, name: str) -> None:
     package = model_of(name).package.__name__
     other = build_elsewhere(tmp_path, package, lambda text: text + "\nANOTHER_BUILD = 1\n")

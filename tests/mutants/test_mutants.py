@@ -64,6 +64,7 @@ def test_some_of_the_twenty_are_found(every: int) -> None:
     assert "3 of 3 found" in done.stdout
 
 
+@pytest.mark.release
 def test_one_in_ten_of_the_printed_is_found_by_the_tests_of_what_is_printed() -> None:
     words = [sys.executable, "-m", "tests.mutants", "--printed", "--every", "10"]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -97,7 +97,7 @@ def test_a_small_scene_has_the_bits_of_the_small_map(tmp_path: Path) -> None:
 
 
 @NATIVE
-@pytest.mark.slow
+@pytest.mark.release
 def test_a_scene_of_many_corners_is_planned(tmp_path: Path) -> None:
     from orchestrator.studies.benchmark.planning import plan_scene
 

@@ -21,7 +21,7 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 test: $(VENV)/.test ## Install and pass the tests that each change must pass
 	$(PYTEST) -m 'not release'
 
-quick: lint types ## Lint, types and the tests that cost less than a second (tests/costs.tsv)
+quick: lint types ## Lint, types and the tests that cost less than 0.3 s of processor (tests/costs.tsv)
 	$(PYTEST) -m 'not slow'
 
 release: release-tools check release-tests audit sbom mutants bench docs ## All that must hold before a release and each night

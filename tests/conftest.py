@@ -62,11 +62,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the slow tests by their recorded cost, and run the files that cost most first."""
+    """Mark the slow tests by their recorded cost, and run the files that cost most first.
+
+    A browser takes time of processes that nobody waits for, so that no cost is recorded for it.
+    """
     costs = read_costs()
     files = cost_of_files(costs)
     for item in items:
-        if item.get_closest_marker("release") or is_slow(item.nodeid, costs):
+        is_in_browser = "browser" in getattr(item, "fixturenames", ())
+        if item.get_closest_marker("release") or is_in_browser or is_slow(item.nodeid, costs):
             item.add_marker(pytest.mark.slow)
     items.sort(key=lambda item: -files.get(item.nodeid.split("::")[0].removeprefix("tests/"), 0.0))
 

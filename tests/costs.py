@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 FILE = Path(__file__).parent / "costs.tsv"
-COST_OF_SLOW = 1.0
+COST_OF_SLOW = 0.3
 """All cases of a test function together [s]; from here on ``make quick`` leaves the function out."""
 LOWEST_RECORDED = 0.2
 """Functions below this [s] are not in the table: 95 of 100 lines would say that a test costs nothing."""
@@ -99,9 +99,12 @@ class CostMeter:
         return (yield from self._phase(item))
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
-    def pytest_runtest_teardown(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """Measure what clears up after a test."""
-        return (yield from self._phase(item))
+    def pytest_runtest_teardown(self, item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, Any, Any]:
+        """Measure what clears up after a test; after the last one, what all of them used ends, a browser say."""
+        result = yield from self._phase(item)
+        if nextitem is None:
+            item.stash[PHASE] = 0.0
+        return result
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, Any, Any]:

@@ -26,11 +26,11 @@ def test_the_table_keeps_what_costs_something(tmp_path: Path) -> None:
     assert file.read_text(encoding="utf-8").splitlines()[1:] == ["0.3\ta.py::one", "1.3\tb.py::two"]
 
 
-def test_slow_is_what_costs_a_second() -> None:
-    costs = {"a.py::one": 0.9, "a.py::two": 1.0}
+def test_slow_is_what_costs_three_tenths_of_a_second() -> None:
+    costs = {"a.py::one": 0.2, "a.py::two": 0.3}
     assert [is_slow(f"tests/a.py::{name}[x]", costs) for name in ("one", "two", "new")] == [False, True, False]
     assert function_of("tests/a.py::one[x::y]") == "a.py::one"
-    assert cost_of_files(costs) == {"a.py": 1.9}
+    assert cost_of_files(costs) == {"a.py": 0.5}
 
 
 def test_the_report_of_a_process_that_crashed_has_no_cost() -> None:

@@ -27,6 +27,7 @@ LOOKS = {
     "dark": {"color_scheme": "dark"},
     "forced": {"color_scheme": "dark", "forced_colors": "active"},
 }
+LOOKED_AT = pytest.mark.parametrize("look", ["light", "dark", pytest.param("forced", marks=pytest.mark.release)])
 STUDY = """
 name: trial
 title: Two systems, three speeds
@@ -78,7 +79,7 @@ def wrong(page: Any, axe: Any) -> Any:
     return page.evaluate(RUN, RULES)
 
 
-@pytest.mark.parametrize("look", LOOKS)
+@LOOKED_AT
 @pytest.mark.parametrize("which", ["replay", "overlay", "study", "index", "catalogue"])
 def test_pages(which: str, look: Any, show: Any, axe: Any, request: pytest.FixtureRequest) -> None:
     scripted = which in ("replay", "overlay")
@@ -92,7 +93,7 @@ def test_pages(which: str, look: Any, show: Any, axe: Any, request: pytest.Fixtu
         assert page.evaluate(RUN, {"type": "rule", "values": NARROW}) == []
 
 
-@pytest.mark.parametrize("look", LOOKS)
+@LOOKED_AT
 def test_every_panel_of_the_page_that_is_driven(look: Any, show: Any, axe: Any, tmp_path: Path) -> None:
     path = tmp_path / "live.html"
     path.write_text(live_page([load_scenario("fault-pose-noise")]), encoding="utf-8")

@@ -89,12 +89,12 @@ class Prepared(NamedTuple):
             list(pool.map(lambda part: self.rows(*(item[part] for item in self.arrays), self.out[part]), parts))
 
 
-def prepare(scenario: str, count: int, has_own_code: bool) -> Prepared:
-    """Return ``count`` runs of a scenario by the complete models, or by code made for the study."""
+def prepare(scenario: str, count: int) -> Prepared:
+    """Return ``count`` runs of a scenario by code made for the study."""
     job, chunk = bound(count, scenario)
     model = Scenario(**job.scenario)
     parameters, times = arrays(job, chunk)
-    choices = own_choices(job._replace(runs=STUDY_CODE_FROM if has_own_code else 0), model, parameters)
+    choices = own_choices(job._replace(runs=STUDY_CODE_FROM), model, parameters)
     out = np.empty((count, FIRST_MEASURE + len(job.measures)))
     prepared = Prepared(
         compile_models(tuple(job.measures), model, choices), (parameters, times, fault_numbers(job, chunk, model)), out
@@ -104,22 +104,25 @@ def prepare(scenario: str, count: int, has_own_code: bool) -> Prepared:
 
 
 def rates() -> None:
-    """Print and record runs a second: plain and disturbed, complete and sliced, on one, two and all cores."""
+    """Print and record runs a second: plain and disturbed, complete, sliced and in lanes, on one, two and all cores."""
     threads = sorted({1, 2, cores()})
-    print(f"{'runs a second':34}" + "".join(f"{count:3} threads" for count in threads) + "  processor time of a run")
+    print(f"{'runs a second':39}" + "".join(f"{count:3} threads" for count in threads) + "  processor time of a run")
     for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, max(2, MANOEUVRES // DISTURBED_SHARE))):
-        for name, has_own_code in (("complete", False), ("study code", True)):
-            runs = prepare(scenario, count, has_own_code)
+        runs = prepare(scenario, count)
+        own = runs.rows.own
+        for name, rows in (("complete", runs.rows.complete), ("study code", own[-1]), ("study code in lanes", own[0])):
+            if name == "study code in lanes" and len(own) == 1:
+                continue  # no vectors here
+            runs = runs._replace(rows=rows)
             found = [measured(partial(runs.run, n)) for n in threads]
             label = f"{scenario}, {name}"
             for number, (wall, _) in zip(threads, found, strict=True):
                 record(f"{label}, {number} threads", count / wall, "1/s")
             each = 1e3 * found[0][1] / count
             record(f"{label}, one run, processor time", each, "ms")
-            print(f"{label:34}" + "".join(f"{count / wall:11.0f}" for wall, _ in found) + f"  {each:.2f} ms")
-            if scenario == PLAIN and not has_own_code:
-                processor, out = found[0][1], runs.out
-    steps = float(out[:, 1].sum()) / 1e7
+            print(f"{label:39}" + "".join(f"{count / wall:11.0f}" for wall, _ in found) + f"  {each:.2f} ms")
+            if scenario == PLAIN and name == "complete":
+                processor, steps = found[0][1], float(runs.out[:, 1].sum()) / 1e7
     record("one exchange and step of the pair, processor time", 1e9 * processor / steps, "ns")
     print(f"one exchange and step of the pair: {1e9 * processor / steps:.0f} ns of processor")
     case4 = load_scenario(PLAIN)

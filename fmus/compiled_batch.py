@@ -125,18 +125,9 @@ def compile_rows(
 
     def rows(parameters: Doubles, times: NDArray[np.int64], disturbed: Doubles, out: Doubles) -> None:
         """Run all; no lock is held meanwhile."""
-        count = len(parameters)
-        shapes = (
-            (parameters, tables.width, np.float64),
-            (times, 2 + len(models), np.int64),
-            (disturbed, FAULT_NUMBERS * len(faults), np.float64),
-            (out, FIRST_KEPT + len(kept), np.float64),
-        )
-        for array, width, kind in shapes:
-            if array.shape != (count, width) or array.dtype != kind or not array.flags.c_contiguous:
-                raise ValueError(f"{array.dtype} {array.shape}: expected {count} lines of {width} in C order")
+        tables.check(parameters, times, disturbed, out)
         pointers = (array.ctypes.data for array in (parameters, times, disturbed, out))
-        if library.batch_rows(tables.address, count, *pointers):
+        if library.batch_rows(tables.address, len(parameters), *pointers):
             raise MemoryError
 
     return rows
@@ -182,6 +173,19 @@ class BatchTables:
         self.address = ctypes.addressof(self._batch)
         self.width = sum(len(variables(model.params)) for model in models.values())
         self._held += libraries
+
+    def check(self, parameters: Doubles, times: NDArray[np.int64], disturbed: Doubles, out: Doubles) -> None:
+        """Raise ``ValueError`` unless the arrays have the sizes and kinds of those of runs."""
+        batch, count = self._batch, len(parameters)
+        shapes = (
+            (parameters, self.width, np.float64),
+            (times, 2 + batch.model_count, np.int64),
+            (disturbed, FAULT_NUMBERS * batch.fault_count, np.float64),
+            (out, FIRST_KEPT + batch.kept_count, np.float64),
+        )
+        for array, width, kind in shapes:
+            if array.shape != (count, width) or array.dtype != kind or not array.flags.c_contiguous:
+                raise ValueError(f"{array.dtype} {array.shape}: expected {count} lines of {width} in C order")
 
     def _note(self, item: RecordedSignal) -> Any:
         when, values = SignalC(0, 0, 0), 0

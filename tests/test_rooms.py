@@ -28,7 +28,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.native", "fmus.python", "fmus.systems", "fmus.model_fields"),
     ("fmus.study_slices",),
     ("fmus.compiled_batch",),
-    ("fmus.compiled_episodes",),
+    ("fmus.compiled_episodes", "fmus.lane_rows"),
     ("fmus.build",),
     ("fmus.user_model", "fmus.policy_fmu", "fmus.sbom"),
     ("orchestrator.inputs.text",),

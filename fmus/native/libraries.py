@@ -23,6 +23,13 @@ UNIT = """/* The model {name} as a table. */
 #define LIBRARY_MEMBERS "{name}_members.h"
 {store}#include "library.c"
 """
+LANES_UNIT = """/* The model {name} in lanes as a table. */
+#include "{name}_lanes.c"
+
+#define LIBRARY_MODEL {name}
+#define LIBRARY_MEMBERS "{name}_members.h"
+#include "lane_library.c"
+"""
 STORE = """#define LIBRARY_STORE(model) &(model)->store,
 """
 """In the unit of a model that has work arrays."""
@@ -69,6 +76,26 @@ def model_files(model: Model, live: Slice | None = None) -> dict[str, str]:
     files = {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
     files[f"{model.name}_members.h"] = MEMBERS_HEAD.format(lines=lines, **count)
     return files | own_files("library.c", "library.h")
+
+
+def load_lanes(model: Model, live: Slice, options: tuple[str, ...]) -> Any:
+    """Return the loaded library of the slice ``live`` of ``model`` in lanes: ``lane_library()`` is its table.
+
+    Raises ``NoLanesError`` where there is no such form, and as :func:`model_library`.
+    """
+    from fmus.compiler.lanes import NoLanesError, lanes_of
+
+    if model.store is not None:
+        raise NoLanesError(f"{model.name} has work arrays")
+    unit = f"{model.name}_lanes_library.c"
+    files = model_files(model, live) | own_files("lane_library.c", "lane_library.h", "lanes.h", "lane_math.h")
+    files |= {
+        f"{model.name}_lanes.c": lanes_of(translate_model(model, live), model.outputs.__name__, live),
+        unit: LANES_UNIT.format(name=model.name),
+    }
+    library = ctypes.CDLL(str(cache_library(f"{model.name}_lanes", unit, files, options=options)))
+    library.lane_library.restype = ctypes.c_void_p
+    return library
 
 
 def load_model(model: Model, live: Slice | None = None, options: tuple[str, ...] = ()) -> Any:

@@ -22,7 +22,13 @@ def master_library() -> Path:
 
 def batch_library() -> Path:
     """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
-    return cache_library("batch", "batch.c", own_files("batch.c", "faults.h", "library.h"))
+    return cache_library("batch", "batch.c", own_files("batch.c", "batch.h", "faults.h", "library.h"))
+
+
+def lane_batch_library(options: tuple[str, ...]) -> Path:
+    """Return the path of the compiled runs in lanes, for this processor. Raises as :func:`batch_library`."""
+    files = own_files("lane_batch.c", "batch.h", "faults.h", "library.h", "lane_library.h", "lanes.h", "lane_math.h")
+    return cache_library("lane_batch", "lane_batch.c", files, options=options)
 
 
 def cache_library(

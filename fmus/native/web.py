@@ -85,7 +85,7 @@ def live_files(models: Mapping[str, Model]) -> dict[str, str]:
     """Return the C files; those called ``..._unit.c`` are compiled."""
     from fmus.native.libraries import model_files, model_unit
 
-    files = own_files("live.c", "batch.c", "faults.h", "library.h")
+    files = own_files("live.c", "batch.c", "batch.h", "faults.h", "library.h")
     charts = 0
     for model in models.values():
         files |= model_files(model)

@@ -5,49 +5,13 @@
  * models keep their variables as the structs of their own C; parameters are laid in once per run. Holds no lock and
  * no static data: any number of threads may be in here at once.
  */
-#include "faults.h"
+#include "batch.h"
 #include "library.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define NUMBER ((int64_t)sizeof(double)) /* or integer [bytes] */
-
-typedef struct {
-    int64_t source, source_place, target, target_place; /* an output of a model, an input of another */
-} Link;
-
-/* An output of a model as last fetched, or an input as it was seen. */
-typedef struct {
-    int64_t model, place, input;
-} Signal;
-
-typedef enum { LAST, LARGEST, GREATEST, SMALLEST, TRAVEL, FIRST, TIME } How;
-
-typedef struct {
-    int64_t how;
-    Signal signal;
-    Signal when;     /* a mode: noted only while bit n of values is set for its value n */
-    uint64_t values; /* 0: always */
-} Kept;
-
-typedef struct {
-    const Library *const *models;
-    const Link *links;
-    const Kept *kept;
-    int64_t model_count, link_count, kept_count;
-    Signal mode, speed;
-    uint64_t final; /* bit n: the mode's value n is final; 0: a run ends at its stop time only */
-    double still;   /* largest absolute speed that counts as standing */
-    int64_t still_ns;
-    const FaultPlan *faults;
-    const int64_t *places; /* inputs that they disturb */
-    int64_t fault_count;
-} Batch;
-
-typedef enum { STOP_TIME, STANDSTILL } End;
 
 /* One model in one run. */
 typedef struct {

@@ -20,6 +20,7 @@ from fmus.compiled_batch import (
     compile_rows,
     signals_to_read,
 )
+from fmus.lane_rows import compile_lane_rows
 from fmus.native.compilers import find_compiler
 from fmus.study_slices import StudyCode, study_slices
 from modelkit.model import Model
@@ -110,7 +111,9 @@ def _compile_rows(
         return complete
     slices = study_slices(whole, signals_to_read(ending, kept), dict(choices))
     code = StudyCode(slices, find_compiler().options_for_this_machine())
-    return StudyRows(complete, compile_rows(whole, ending, kept, faults, code))
+    alone = compile_rows(whole, ending, kept, faults, code)
+    lanes = None if faults else compile_lane_rows(whole, ending, kept, code, alone)
+    return StudyRows(complete, *([] if lanes is None else [lanes]), alone)
 
 
 def stop_condition_of(scenario: Scenario) -> StopCondition:

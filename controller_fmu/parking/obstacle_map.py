@@ -38,7 +38,7 @@ LANDMARK_VERTICES = 2 * MAX_LANDMARKS
 MAX_REMEMBERED = 8
 """Unexplained echoes that are kept for planning."""
 ROW_EXTENSION = 10.0
-"""The row and the road go on for this far [m]."""
+"""The row and the road go on for this far [m], and what ends them is so thick."""
 BEHIND_VEHICLE = 0.6
 """A gap of unknown depth is taken to end this far [m] behind the vehicle in it."""
 SLOT_QUADS = 7
@@ -136,13 +136,8 @@ def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, ve
         return quad._replace(x0=quad.x0 + from_low_x)
     if least == from_high_x and from_high_x < quad.x1 - quad.x0:
         return quad._replace(x1=quad.x1 - from_high_x)
-    if quad.y1 <= quad.y0 or least == from_low_y:
-        shift = from_low_y if from_low_y < from_high_y else -from_high_y
-        flat = quad.y1 <= quad.y0
-        return quad._replace(
-            y0=quad.y0 + (shift if flat else from_low_y),
-            y1=quad.y1 + (shift if flat else 0.0),
-        )
+    if least == from_low_y:
+        return quad._replace(y0=quad.y0 + from_low_y)
     return quad._replace(y1=quad.y1 - from_high_y)
 
 
@@ -238,14 +233,17 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
     b = slot.ahead
     first = min(a.start, a.end - length)
     last = max(b.end, b.start + length)
+    behind = max(end, a.front + body)
+    ahead = max(end, b.front + body)
+    far = road.y - ROW_EXTENSION
     return (
-        Quad(first, a.front, a.end, max(end, a.front + body), True),
-        Quad(b.start, b.front, last, max(end, b.front + body), True),
-        Quad(a.end, end, b.start, end, True),
-        Quad(first - ROW_EXTENSION, a.front, first, a.front, True, slot.slope, a.end),
-        Quad(last, b.front, last + ROW_EXTENSION, b.front, True, slot.slope, b.start),
-        Quad(first - ROW_EXTENSION, road.y, last + ROW_EXTENSION, road.y, True, slot.slope, road.x),
-        Quad(road.x, road.y, road.x, min(a.front, b.front), True),
+        Quad(first, a.front, a.end, behind, True),
+        Quad(b.start, b.front, last, ahead, True),
+        Quad(a.end, end, b.start, end + ROW_EXTENSION, True),
+        Quad(first - ROW_EXTENSION, a.front, first, behind, True, slot.slope, a.end),
+        Quad(last, b.front, last + ROW_EXTENSION, ahead, True, slot.slope, b.start),
+        Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, True, slot.slope, road.x),
+        Quad(road.x, road.y, road.x + ROW_EXTENSION, min(a.front, b.front), True),
     )
 
 

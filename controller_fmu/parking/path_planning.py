@@ -188,7 +188,7 @@ def continue_plan(
     relaxes = memory.strategy == Strategy.SLOT and not plan.is_relaxed
     if status == PlanningStatus.GOAL_BLOCKED and relaxes:
         return memory._replace(plan=memory.plan._replace(is_relaxed=True, steps=0, plans=plan.plans - 1))
-    is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED) and not relaxes
+    is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED)
     is_blocked = is_blocked or memory.perception.remembered[-1].is_present
     reason = Reason.BLOCKED if is_blocked else Reason.NO_PATH
     reason = Reason.BAD_PARAMETER if status == PlanningStatus.TOO_MANY_EDGES else reason

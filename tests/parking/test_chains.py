@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from controller_fmu.parking.geometry.outline import boundary_point, extent_within, vehicle_outline
+from controller_fmu.parking.geometry.outline import extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import (
     as_point,
     edge_guess,
@@ -227,12 +227,12 @@ def test_a_sensor_that_looks_aside_measures_the_same_wall() -> None:
     assert [start_point(wall).x, end_point(wall).x] == pytest.approx([0.8, 0.8])
 
 
-def test_the_outline_is_sampled_all_around() -> None:
+def test_the_extent_of_the_outline_within_a_box_is_exact() -> None:
     outline = vehicle_outline(CAR, 1.0)
-    points = [boundary_point(outline, number) for number in range(40)]
-    assert max(point.x for point in points) == pytest.approx(outline.centre_ahead + outline.half_length)
-    assert min(point.y for point in points) == pytest.approx(-outline.half_width)
     inside = extent_within(Pose(), outline, Pose(), 1.0, Point(-9.0, 0.5), Point(9.0, 9.0))
-    assert inside.low_y >= 0.5
-    assert inside.high_y == pytest.approx(outline.half_width)
+    assert (inside.low_y, inside.high_y) == pytest.approx((0.5, outline.half_width))
+    assert inside.high_x == pytest.approx(outline.centre_ahead + outline.half_length)
+    band = extent_within(Pose(), outline, Pose(), 1.0, Point(1.01, -9.0), Point(1.02, 9.0))
+    assert (band.low_x, band.high_x) == pytest.approx((1.01, 1.02))
+    assert (band.low_y, band.high_y) == pytest.approx((-outline.half_width, outline.half_width))
     assert extent_within(Pose(), outline, Pose(), 1.0, Point(9.0, 9.0), Point(10.0, 10.0)).low_x > 1e8

@@ -3,7 +3,8 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
+from controller_fmu.parking.geometry.polygons import clip_to_box
 from modelkit.car import Car, car_length, largest_curvature
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -63,10 +64,6 @@ def outline_frame(pose: Pose) -> OutlineFrame:
     return OutlineFrame(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
 
 
-SAMPLE_COUNT = 40
-"""Points on the boundary: 0.3 m apart."""
-
-
 class Extent(NamedTuple):
     """Least and largest coordinate of some points [m]; low > high: there are none."""
 
@@ -81,32 +78,23 @@ def extent_within(pose: Pose, outline: VehicleOutline, frame: Pose, side: float,
 
     The box and the result [m] are in ``frame``, its y axis multiplied by ``side`` (1, -1).
     """
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
     found = Extent()
-    for number in range(SAMPLE_COUNT):
-        at = boundary_point(outline, number)
-        x = pose.x + at.x * cos - at.y * sin
-        y = pose.y + at.x * sin + at.y * cos
-        point = point_to_frame(x, y, frame)
-        across = side * point.y
-        if low.x <= point.x <= high.x and low.y <= across <= high.y:
-            found = Extent(
-                min(found.low_x, point.x),
-                max(found.high_x, point.x),
-                min(found.low_y, across),
-                max(found.high_y, across),
-            )
+    for edge in range(4):
+        start = _corner(pose, outline, frame, side, edge)
+        end = _corner(pose, outline, frame, side, edge + 1)
+        part = clip_to_box(start, end, low, high)
+        for share in (part.enter, part.leave):
+            if part.enter <= part.leave:
+                x = start.x + share * (end.x - start.x)
+                y = start.y + share * (end.y - start.y)
+                found = Extent(min(found.low_x, x), max(found.high_x, x), min(found.low_y, y), max(found.high_y, y))
     return found
 
 
-def boundary_point(outline: VehicleOutline, number: int) -> Point:
-    """Return one of ``SAMPLE_COUNT`` points on the outline [m] in the vehicle's frame: ten on each edge."""
-    per_edge = SAMPLE_COUNT // 4
-    edge = number // per_edge
-    share = 2.0 * (number % per_edge) / per_edge - 1.0
-    ahead = outline.half_length
-    left = outline.half_width
-    x = ahead * share if edge == 0 else (ahead if edge == 1 else (-ahead * share if edge == 2 else -ahead))
-    y = -left if edge == 0 else (left * share if edge == 1 else (left if edge == 2 else -left * share))
-    return Point(outline.centre_ahead + x, y)
+def _corner(pose: Pose, outline: VehicleOutline, frame: Pose, side: float, number: int) -> Point:
+    """Return a corner of a vehicle at ``pose`` in ``frame``: 0 to 3 around it, then the first again."""
+    along = outline.half_length if number % 4 < 2 else -outline.half_length
+    left = outline.half_width if 0 < number < 3 else -outline.half_width
+    at = point_from_frame(outline.centre_ahead + along, left, pose)
+    point = point_to_frame(at.x, at.y, frame)
+    return Point(point.x, side * point.y)

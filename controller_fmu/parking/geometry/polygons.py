@@ -2,6 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
+from modelkit.geometry import Point
 from modelkit.signal import Signal
 
 LOCAL_VERTICES = 256
@@ -40,3 +41,30 @@ def segment_distance_squared(x: float, y: float, dx: float, dy: float) -> float:
     ex = x - t * dx
     ey = y - t * dy
     return ex * ex + ey * ey
+
+
+class SegmentPart(NamedTuple):
+    """The part of a segment from the share ``enter`` of its length to ``leave``; none where those are in disorder."""
+
+    enter: float
+    leave: float
+
+
+def clip_to_box(start: Point, end: Point, low: Point, high: Point) -> SegmentPart:
+    """Return the part of a segment that lies within the box ``low`` to ``high``."""
+    enter = 0.0
+    leave = 1.0
+    for side in range(4):
+        is_x = side < 2
+        at = start.x if is_x else start.y
+        rate = (end.x if is_x else end.y) - at
+        box = low if side % 2 == 0 else high
+        left = (box.x if is_x else box.y) - at
+        if abs(rate) < 1e-12:
+            if left != 0.0 and (left > 0.0) == (side % 2 == 0):
+                return SegmentPart(1.0, 0.0)
+        elif (rate > 0.0) == (side % 2 == 0):
+            enter = max(enter, left / rate)
+        else:
+            leave = min(leave, left / rate)
+    return SegmentPart(enter, leave)

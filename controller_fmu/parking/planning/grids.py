@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.geometry.polygons import segment_distance_squared
+from controller_fmu.parking.geometry.polygons import clip_to_box, segment_distance_squared
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
 from controller_fmu.parking.planning.work import (
@@ -12,8 +12,6 @@ from controller_fmu.parking.planning.work import (
     NO_INDEX,
     PlanCount,
     PlanningWork,
-    clear_cost_to_go,
-    set_edge,
 )
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -33,37 +31,17 @@ def edge_reach(region: SearchRegion, car: VehicleOutline) -> float:
 
 def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: SearchRegion) -> int:
     """Return the count of edges with this one added, as far as it lies in the search region or within 10 m of it."""
-    low = -10.0
-    high = region.side + 10.0
-    ax = start.x - region.x0
-    ay = start.y - region.y0
-    dx = end.x - start.x
-    dy = end.y - start.y
-    enter = 0.0
-    leave = 1.0
-    for side in range(4):
-        rate = dx if side < 2 else dy
-        at = ax if side < 2 else ay
-        bound = low if side % 2 == 0 else high
-        if abs(rate) < 1e-12:
-            if at < low or at > high:
-                return count
-        else:
-            t = (bound - at) / rate
-            if (rate > 0.0) == (side % 2 == 0):
-                enter = t if t > enter else enter
-            else:
-                leave = t if t < leave else leave
-    if enter > leave:
+    low = Point(region.x0 - 10.0, region.y0 - 10.0)
+    high = Point(region.x0 + region.side + 10.0, region.y0 + region.side + 10.0)
+    part = clip_to_box(start, end, low, high)
+    if part.enter > part.leave:
         return count
-    if count >= len(work.edge_x1):
-        return count + 1
-    set_edge(work, count, _onward(start, enter, dx, dy), _onward(start, leave, dx, dy))
+    if count < len(work.edge_x1):
+        work.edge_x1[count] = start.x + part.enter * (end.x - start.x)
+        work.edge_y1[count] = start.y + part.enter * (end.y - start.y)
+        work.edge_x2[count] = start.x + part.leave * (end.x - start.x)
+        work.edge_y2[count] = start.y + part.leave * (end.y - start.y)
     return count + 1
-
-
-def _onward(start: Point, share: float, dx: float, dy: float) -> Point:
-    return Point(start.x + share * dx, start.y + share * dy)
 
 
 def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: VehicleOutline) -> bool:
@@ -135,7 +113,9 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
     """Mark the cost-to-go cells whose every point is too near an edge for the rear axle's midpoint."""
     region = problem.region
     count = region.cost_to_go_count
-    clear_cost_to_go(work, count * count)
+    for cell in range(count * count):
+        work.cost_to_go[cell] = UNREACHABLE_COST
+        work.cost_to_go_next[cell] = NOT_QUEUED
     reach = problem.car.half_width + problem.margin - HALF_DIAGONAL * region.cost_to_go_cell
     for edge in range(edges):
         x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)

@@ -37,7 +37,6 @@ from controller_fmu.parking.planning.work import (
     PlanValue,
     set_best_segment,
     set_segment,
-    set_vertex,
 )
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
@@ -144,7 +143,9 @@ def begin(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], req
     work.counts[PlanCount.VERTEX_COUNT] = count
     for number in range(count):
         vertex = _vertex(local, known, number)
-        set_vertex(work, number, vertex.x, vertex.y, vertex.polygon)
+        work.corner_x[number] = vertex.x
+        work.corner_y[number] = vertex.y
+        work.corner_of[number] = vertex.polygon
     work.counts[PlanCount.COUNT] = 0
     work.counts[PlanCount.PHASE] = PlanningPhase.LAY_OUT
     work.counts[PlanCount.STAGE] = 0
@@ -286,7 +287,6 @@ def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
         else:
             set_best_segment(work, number, work.segment_length[number], work.segment_curvature[number])
     work.counts[PlanCount.BEST_SEGMENT_COUNT] = count
-    work.counts[PlanCount.BEST_STAGE] = work.counts[PlanCount.STAGE]
     work.values[PlanValue.BEST_PATH_COST] = cost
     work.values[PlanValue.BEST_PATH_MARGIN] = problem.margin
 

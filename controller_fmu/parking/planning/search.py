@@ -11,7 +11,6 @@ from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_
 from controller_fmu.parking.planning.search_tree import (
     add_node,
     clear_tree,
-    count_expansion,
     pop_lowest,
     push_bucket,
 )
@@ -42,6 +41,8 @@ SUCCESSOR_RATIO = 2.3
 """Length of each longer successor over that of the one before."""
 BUCKETS_PER_METRE = 4.0
 """Buckets of the queue for each metre of cost."""
+MAX_CROWDING = 30000
+"""Nodes counted in a region: what the column holds."""
 MIN_LENGTH = 0.02
 MAX_SUCCESSORS = 70
 MAX_EVALUATIONS_PER_STEP = 32
@@ -155,7 +156,9 @@ def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
     gear = gear_of(work, node)
     lock = lock_of(work, node, problem)
     none_yet = work.counts[PlanCount.BEST_NODE] == NO_INDEX
-    count_expansion(work, region_of(pose, problem))
+    region = region_of(pose, problem)
+    if work.crowding[region] < MAX_CROWDING:
+        work.crowding[region] += 1
     work.node_state[node] = NODE_CLOSED
     work.counts[PlanCount.EXPANSIONS] = work.counts[PlanCount.EXPANSIONS] + 1
     measure_free_distances(work, pose, problem)

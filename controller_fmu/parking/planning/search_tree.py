@@ -1,4 +1,4 @@
-"""The search tree in its work arrays: nodes, the table that finds them by pose, the queue; only these write to them."""
+"""The search tree in its work arrays: nodes, the table that finds them by pose, the queue."""
 
 from controller_fmu.parking.planning.problem import Successor
 from controller_fmu.parking.planning.work import (
@@ -46,12 +46,6 @@ def add_node(work: PlanningWork, successor: Successor, key: int, slot: int) -> i
     work.node_slot[node] = work.slot[slot]
     work.slot[slot] = node
     return node
-
-
-def count_expansion(work: PlanningWork, region: int) -> None:
-    """Count a region once more."""
-    if work.crowding[region] < 30000:
-        work.crowding[region] += 1
 
 
 def push_bucket(work: PlanningWork, node: int, bucket: int) -> None:

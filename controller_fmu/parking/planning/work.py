@@ -4,7 +4,6 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES
-from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
 from modelkit.vocabulary import Pose
 
@@ -106,7 +105,6 @@ class PlanCount(IntEnum):
     STATUS = 14
     EDGE_COUNT = 15
     BEST_SEGMENT_COUNT = 16
-    BEST_STAGE = 17
     GOAL_TIGHTER = 18
     VERTEX_COUNT = 20
     """Vertices of the obstacle map in use."""
@@ -128,21 +126,6 @@ class PlanValue(IntEnum):
     BEST_PATH_MARGIN = 24
     WORD_LIMIT = 25
     """Words that cost as much [m] are no use."""
-
-
-def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:
-    """Set an edge from ``start`` to ``end`` [m], in the frame about the goal."""
-    work.edge_x1[edge] = start.x
-    work.edge_y1[edge] = start.y
-    work.edge_x2[edge] = end.x
-    work.edge_y2[edge] = end.y
-
-
-def clear_cost_to_go(work: PlanningWork, cells: int) -> None:
-    """Make every cell of the cost-to-go grid free and unmeasured."""
-    for cell in range(cells):
-        work.cost_to_go[cell] = 1e6
-        work.cost_to_go_next[cell] = -2
 
 
 def word_length(work: PlanningWork, word: int, segment: int) -> float:
@@ -173,13 +156,6 @@ def move_segments(work: PlanningWork, start: int, count: int, by: int) -> None:
         work.segment_x[segment + by] = work.segment_x[segment]
         work.segment_y[segment + by] = work.segment_y[segment]
         work.segment_heading[segment + by] = work.segment_heading[segment]
-
-
-def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int) -> None:
-    """Set a vertex of the scene at (x, y) [m]."""
-    work.corner_x[vertex] = x
-    work.corner_y[vertex] = y
-    work.corner_of[vertex] = polygon
 
 
 def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:

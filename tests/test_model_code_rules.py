@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from fmus.compiler import translate
+from fmus.native.sources import translate_model
 from orchestrator.inputs.scenario.models import MODELS
 
 ROOT = Path(__file__).parents[1]
@@ -88,7 +88,7 @@ def test_a_function_without_a_unit_is_found() -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_model_translates(name: Any) -> None:
-    assert f"void {MODELS[name].name}_step(" in translate(MODELS[name]).source
+    assert f"void {MODELS[name].name}_step(" in translate_model(MODELS[name]).source
 
 
 @pytest.mark.parametrize(

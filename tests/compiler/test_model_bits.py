@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from fmus.compiler import translate
+from fmus.native.sources import translate_model
 from modelkit.variables import flatten
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.models import MODELS
@@ -15,7 +15,7 @@ from tests.compiler.c_model import WARNINGS, ZIG, CModel, compiled
 SCENARIOS = {
     "guo2015-case4-105": ("stop_time=10",),
     "apa-parallel-walls": (),
-    "zhang2022-double-track": ("stop_time=10",),
+    "zhang2022-double-track": ("stop_time=5",),
     "hsic-straight": ("stop_time=12",),
     "preview": ("stop_time=1.5",),
     "adaptive": (),
@@ -28,7 +28,7 @@ EACH_CHANGE = ("guo2015-case4-105", "zhang2022-double-track", "preview")
 
 @pytest.fixture(scope="module")
 def translations() -> Any:
-    return {name: translate(model) for name, model in MODELS.items()}
+    return {name: translate_model(model) for name, model in MODELS.items()}
 
 
 @pytest.fixture(scope="module")

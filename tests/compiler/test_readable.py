@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from fmus.compiler import translate
+from fmus.native.sources import translate_model
 from orchestrator.inputs.scenario.models import MODELS
 from tests.compiler.c_model import COMPILER, ZIG, compiled
 from tests.compiler.language import load, model_of, whole_module
@@ -58,7 +59,7 @@ def step(state: Nothing, inputs: In, params: Nothing, dt_ns: int) -> tuple[Nothi
 
 @pytest.fixture(scope="module")
 def translations() -> Any:
-    return [translate(model) for model in MODELS.values()]
+    return [translate_model(model) for model in MODELS.values()]
 
 
 def test_lines_fit_on_a_page(translations: Any) -> None:

@@ -12,6 +12,7 @@ from controller_fmu import MODEL as CONTROLLER
 from fmus.compiler import Translation, live_inputs, translate
 from fmus.compiler.slicing import Slice
 from fmus.native.compilers import FLAGS, find_compiler
+from fmus.native.sources import translate_model
 from modelkit.model import Model
 from modelkit.variables import variables
 from vehicle_fmu import MODEL as VEHICLE
@@ -129,7 +130,7 @@ def test_live_outputs_of_a_slice_have_the_same_bits(tmp_path: Path) -> None:
 
 def test_the_vehicle_without_sensors_measures_nothing() -> None:
     used = frozenset(item.name for item in variables(VEHICLE.outputs) if not item.name.startswith("ultrasonic"))
-    whole, sliced = translate(VEHICLE), translate(VEHICLE, Slice(used))
+    whole, sliced = translate_model(VEHICLE), translate_model(VEHICLE, Slice(used))
     assert "cone_gap(" in whole.source
     assert "cone_gap(" not in sliced.source
     assert sliced.header == whole.header, "the layout stays"
@@ -139,7 +140,7 @@ def test_a_system_reads_its_own_inputs_only() -> None:
     assert not [name for name in live_inputs(CONTROLLER, Slice(frozenset({"steering_wheel_request"}), frozenset({0})))
                 if name.startswith("ultrasonic")]  # fmt: skip
     chosen = translate(CONTROLLER, Slice(frozenset({"steering_wheel_request"}), frozenset({0}))).source
-    assert len(chosen) < 0.25 * len(translate(CONTROLLER).source)
+    assert len(chosen) < 0.25 * len(translate_model(CONTROLLER).source)
 
 
 def printed(code: Translation, folder: Path) -> list[list[str]]:

@@ -15,7 +15,7 @@ from orchestrator.simulation.cosim import model_description
 
 resource = pytest.importorskip("resource", reason="limits of this kind are POSIX's")
 RUN = ["run", "guo2015-case4", "--fmus", "none", "--no-page"]
-STUDY = ["sweep", "guo2015-trial", "--stride", "100"]
+STUDY = ["sweep", "guo2015-trial", "--stride", "250"]
 
 
 def ran(words: list[str], folder: Path, limits: dict[str, int]) -> subprocess.CompletedProcess[str]:

@@ -39,7 +39,7 @@ def is_as_meant(found: Ended) -> bool:
     return found.outcome == found.expected and not found.contact
 
 
-@pytest.mark.slow
+@pytest.mark.release  # tests/golden drives the same scenarios and compares their ends with the expected ones
 @pytest.mark.parametrize("name", NAMES)
 def test_it_ends_as_meant(name: str, tmp_path: Path) -> None:
     assert is_as_meant(ended(name, tmp_path)), ended(name, tmp_path)

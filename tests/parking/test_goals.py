@@ -15,7 +15,7 @@ from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, Landmar
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.obstacle_map import is_on_map
 from controller_fmu.parking.perception import number_of_choice, with_offer
-from controller_fmu.parking.planning.planner import begin, is_for_request
+from controller_fmu.parking.planning.planner import store_request
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
@@ -135,14 +135,15 @@ def test_the_polygons_of_a_map_stand_behind_those_of_the_landmarks() -> None:
     own = ObstacleMap()
     own = own._replace(vertices=(Vertex(9.0, 9.0, 1), *own.vertices[1:]))
     work, request = new_store(PlanningWork), PlanningRequest(has_map=True)
-    begin(work, own, known, request)
-    assert is_for_request(work, own, known, request)
-    assert not is_for_request(work, own, (Vertex(0.1, 0.0, 1), *known[1:]), request)
+    assert not store_request(work, own, known, request)
+    assert store_request(work, own, known, request)
+    assert not store_request(work, own, (Vertex(0.1, 0.0, 1), *known[1:]), request)
+    assert not store_request(work, own, known, request)
     assert list(work.corner_x[:2]) == [9.0, 0.0]
     whole = list(zip(work.corner_x, work.corner_y, work.corner_of, strict=True))
     assert [v[:2] for v in whole[LOCAL_VERTICES : LOCAL_VERTICES + 5]] == [*corners, (0.0, 0.0)]
     assert len({v[2] for v in whole if v[2]}) == 2
-    begin(work, own, known, request._replace(has_map=False))
+    assert not store_request(work, own, known, request._replace(has_map=False))
     assert work.counts[PlanCount.VERTEX_COUNT] == LOCAL_VERTICES
     sides = {y: is_on_map(wall(2.0, y, 3.0)[0], known, 0.2) for y in (0.1, 1.0, 1.9, 2.3)}
     assert sides == {0.1: True, 1.0: False, 1.9: True, 2.3: False}

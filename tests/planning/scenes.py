@@ -11,7 +11,7 @@ from shapely.geometry import Polygon
 
 from controller_fmu.parking.geometry.outline import VehicleOutline, pose_along_arc
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.planning.planner import PlanningStatus, begin, search_until
+from controller_fmu.parking.planning.planner import PlanningStatus, restart, search_until, store_request
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanCount, PlanningWork
 from modelkit.store import new_store
@@ -66,7 +66,8 @@ def search(store: Any, scene: Any, request: PlanningRequest, count: int) -> None
 def plan(request: PlanningRequest, scene: Any, store: Any = None, at_a_time: Any = 200, max_steps: Any = 4000) -> Any:
     """Return the store after the search for ``request`` has ended."""
     store = new_store(PlanningWork) if store is None else store
-    begin(store, ObstacleMap(), scene.corners, request)
+    store_request(store, ObstacleMap(), scene.corners, request)
+    restart(store)
     for count in range(at_a_time, max_steps, at_a_time):
         search(store, scene, request, count)
         if store.counts[PlanCount.STATUS] != PlanningStatus.PLANNING:

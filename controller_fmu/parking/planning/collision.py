@@ -77,15 +77,14 @@ def sweep_arc(
     direction = sign(distance)
     longest = abs(distance)
     rate = max_point_speed_ratio(problem.car, curvature)
-    least = MIN_STEP if MIN_STEP * rate < problem.margin else problem.margin / rate
+    least = min(MIN_STEP, problem.margin / rate)
     driven = 0.0
     while driven < longest:
-        sure = gap / rate if gap > 0.0 else 0.0
-        step = sure if sure > least else least
-        after = driven + step if driven + step < longest else longest
+        sure = max(gap, 0.0) / rate
+        after = min(driven + max(sure, least), longest)
         gap_after = clearance(work, pose_along_arc(pose, direction * after, curvature), problem) - problem.margin
         if gap_after < 0.0:
-            return ArcSweep(driven + sure if driven + sure < longest else longest, gap_after)
+            return ArcSweep(min(driven + sure, longest), gap_after)
         driven = after
         gap = gap_after
     return ArcSweep(longest, gap)

@@ -129,10 +129,8 @@ def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -
             if abs(dy) > region.cost_to_go_cell:
                 a = x1 + dx * (y - reach) / dy
                 b = x1 + dx * (y + reach) / dy
-                low = a if a < b else b
-                high = b if a < b else a
-                from_x = low if low > from_x else from_x
-                to_x = high if high < to_x else to_x
+                from_x = max(min(a, b), from_x)
+                to_x = min(max(a, b), to_x)
             for column in range(
                 _cell(from_x - reach, region.cost_to_go_cell, count),
                 _cell(to_x + reach, region.cost_to_go_cell, count) + 1,

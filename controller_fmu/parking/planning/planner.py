@@ -92,8 +92,9 @@ def search_until(
     work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest, count: int
 ) -> None:
     """Bring the search for a path among ``local`` and, if requested, ``known`` polygons to ``count`` steps."""
-    if work.counts[PlanCount.COUNT] > count or not is_for_request(work, local, known, request):
-        begin(work, local, known, request)
+    is_same = store_request(work, local, known, request)
+    if work.counts[PlanCount.COUNT] > count or not is_same:
+        restart(work)
     for _ in range(work.counts[PlanCount.COUNT], count):
         step(work, request)
 
@@ -116,41 +117,32 @@ def search_status(work: PlanningWork) -> int:
     return work.counts[PlanCount.STATUS]
 
 
-def is_for_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> bool:
-    """Return whether the work arrays hold the search for this request."""
-    numbers = _numbers(request)
-    for which in range(REQUEST_SIZE):
-        if work.requested[which] != numbers[which]:
-            return False
-    count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
-    if work.counts[PlanCount.VERTEX_COUNT] != count:
-        return False
-    for number in range(count):
-        vertex = _vertex(local, known, number)
-        if work.corner_of[number] != vertex.polygon:
-            return False
-        if work.corner_x[number] != vertex.x or work.corner_y[number] != vertex.y:
-            return False
-    return True
-
-
-def begin(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> None:
-    """Reset the search, and store its scene and request."""
-    numbers = _numbers(request)
-    for which in range(REQUEST_SIZE):
-        work.requested[which] = numbers[which]
-    count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
-    work.counts[PlanCount.VERTEX_COUNT] = count
-    for number in range(count):
-        vertex = _vertex(local, known, number)
-        work.corner_x[number] = vertex.x
-        work.corner_y[number] = vertex.y
-        work.corner_of[number] = vertex.polygon
+def restart(work: PlanningWork) -> None:
+    """Bring the search for the stored request back to its first step."""
     work.counts[PlanCount.COUNT] = 0
     work.counts[PlanCount.PHASE] = PlanningPhase.LAY_OUT
     work.counts[PlanCount.STAGE] = 0
     work.counts[PlanCount.STATUS] = PlanningStatus.PLANNING
     work.counts[PlanCount.BEST_SEGMENT_COUNT] = 0
+
+
+def store_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> bool:
+    """Store scene and request in the work arrays; returns whether they held the same before."""
+    numbers = _numbers(request)
+    count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
+    is_same = work.counts[PlanCount.VERTEX_COUNT] == count
+    work.counts[PlanCount.VERTEX_COUNT] = count
+    for which in range(REQUEST_SIZE):
+        is_same = is_same and work.requested[which] == numbers[which]
+        work.requested[which] = numbers[which]
+    for number in range(count):
+        vertex = _vertex(local, known, number)
+        is_there = work.corner_x[number] == vertex.x and work.corner_y[number] == vertex.y
+        is_same = is_same and is_there and work.corner_of[number] == vertex.polygon
+        work.corner_x[number] = vertex.x
+        work.corner_y[number] = vertex.y
+        work.corner_of[number] = vertex.polygon
+    return is_same
 
 
 def _vertex(local: ObstacleMap, known: tuple[Vertex, ...], number: int) -> Vertex:
@@ -246,7 +238,7 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     goal = problem.root if problem.from_goal else problem.target
     at_start = 0.0 if is_inside(work, request.start) else clearance(work, start, problem)
     at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, goal, problem)
-    work.values[PlanValue.MIN_END_CLEARANCE] = at_start if at_start < at_goal else at_goal
+    work.values[PlanValue.MIN_END_CLEARANCE] = min(at_start, at_goal)
     work.counts[PlanCount.GOAL_TIGHTER] = 0 if at_start < at_goal else 1
     if at_start <= 0.0:
         _finish(work, PlanningStatus.START_BLOCKED)

@@ -54,10 +54,9 @@ def search_region(request: PlanningRequest) -> SearchRegion:
     """Return the search region of a request, in a frame whose origin is the goal."""
     x = request.start.x - request.goal.x
     y = request.start.y - request.goal.y
-    across = abs(x) if abs(x) > abs(y) else abs(y)
-    side = across + 2.0 * REGION_MARGIN
-    edge_cell = side / EDGE_CELLS if side > EDGE_CELL * EDGE_CELLS else EDGE_CELL
-    cost_to_go = side / COST_TO_GO_CELLS if side > COST_TO_GO_CELL * COST_TO_GO_CELLS else COST_TO_GO_CELL
+    side = max(abs(x), abs(y)) + 2.0 * REGION_MARGIN
+    edge_cell = max(side / EDGE_CELLS, EDGE_CELL)
+    cost_to_go = max(side / COST_TO_GO_CELLS, COST_TO_GO_CELL)
     edge_cell_count = math.floor(side / edge_cell)
     cost_to_go_count = math.floor(side / cost_to_go)
     return SearchRegion(
@@ -70,10 +69,8 @@ def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProble
     stage = SEARCH_SCHEDULE[work.counts[PlanCount.STAGE]]
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     goal = Pose(0.0, 0.0, request.goal.heading)
-    desired = request.margin * stage.margin_fraction
     clearance = work.values[PlanValue.MIN_END_CLEARANCE] - CLEARANCE_RESERVE
-    margin = desired if desired < clearance else clearance
-    margin = margin if margin > MIN_MARGIN else MIN_MARGIN
+    margin = max(min(request.margin * stage.margin_fraction, clearance), MIN_MARGIN)
     from_goal = stage.root_at_tighter_end == (work.counts[PlanCount.GOAL_TIGHTER] == 1)
     root = goal if from_goal else start
     target = start if from_goal else goal

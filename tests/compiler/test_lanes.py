@@ -196,6 +196,21 @@ def halvings(value: float, most: int) -> int:
     return count
 
 
+def nearest(table: tuple[float, ...], value: float) -> float:
+    """Return the number of a table, the same one for all runs, that is nearest to a value."""
+    best = table[0]
+    for number in table:
+        if abs(number - value) < abs(best - value):
+            best = number
+    return best
+
+
+def weighed(row: tuple[Cell, ...], upward: bool) -> float:
+    """Return the weight of the first or last of a row: of another one in each run."""
+    cell = row[0] if upward else row[4]
+    return cell.value * cell.weight
+
+
 def turned(angle: float, by: float) -> float:
     """Return a number made of sines and cosines, of an argument that changes between some of them."""
     cosine = math.cos(angle)

@@ -1,6 +1,7 @@
 """The translator's C as a syntax tree, and what its structs, functions and constants are."""
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from pycparser import c_ast, c_parser
@@ -49,6 +50,7 @@ class Declarations:
         self._read_only: set[tuple[str, str]] = set()
         for node in tree.ext:
             self._read(node)
+        self._share_tables()
 
     def _read(self, node: Any) -> None:
         if isinstance(node, c_ast.Typedef):
@@ -74,6 +76,22 @@ class Declarations:
                 digits = (item.value.expr if negative else item.value).value
                 self.lengths[item.name] = -int(digits) if negative else int(digits)
             self.enums[item.name] = item.name
+
+    def _share_tables(self) -> None:
+        """Give parameters the kind of the table that every call passes there: numbers that all lanes share."""
+        passed: dict[tuple[str, int], set[Kind | None]] = {}
+        for function in self.functions.values():
+            for call in calls_in(function):
+                for place, item in enumerate(call.args.exprs if call.args else []):
+                    name = item.name if isinstance(item, c_ast.ID) else ""
+                    kind = self.constants.get(name)
+                    is_array = isinstance(kind, LaneArray) and is_table(kind)
+                    passed.setdefault((call.name.name, place), set()).add(kind if is_array else None)
+        for (function, place), kinds in passed.items():
+            kind = kinds.pop() if len(kinds) == 1 else None
+            if isinstance(kind, LaneArray) and function in self.signatures:
+                params = self.signatures[function][1]
+                params[place] = (params[place][0], Pointer(kind.item))
 
     def _sign(self, decl: Any) -> None:
         params = decl.type.args.params if decl.type.args else []
@@ -107,6 +125,14 @@ def is_const(node: Any) -> bool:
     while isinstance(node, c_ast.PtrDecl | c_ast.ArrayDecl):
         node = node.type
     return "const" in node.quals
+
+
+def calls_in(node: Any) -> Iterator[Any]:
+    """Yield the calls in a part of the syntax tree."""
+    if isinstance(node, c_ast.FuncCall):
+        yield node
+    for _, child in node.children():
+        yield from calls_in(child)
 
 
 def is_table(kind: Kind) -> bool:

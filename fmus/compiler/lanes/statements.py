@@ -160,6 +160,9 @@ class Function:
             if place is not None and isinstance(place.kind, LaneStruct):
                 self._declare_copy(node.name, self.write.value(node.init.expr))
                 return
+        if isinstance(node.init, c_ast.TernaryOp) and isinstance(node.type, c_ast.PtrDecl) and is_const(node.type):
+            self._declare_choice(node)
+            return
         kind = kind_of_type(node.type, self.file.lengths)
         text = ""
         if node.init is not None:
@@ -180,6 +183,26 @@ class Function:
         self._line(f"const {declaration(value.kind, copy)} = {value.text};")
         self.write.variables[name] = LaneVariable(Pointer(value.kind), self.level)
         self._line(f"const {declaration(Pointer(value.kind), name)} = &{copy};")
+
+    def _declare_choice(self, node: Any) -> None:
+        """Write a pointer to one of two structs, to a copy of it where the choice differs between lanes."""
+        parts = (node.init.cond, node.init.iftrue, node.init.iffalse)
+        where, one, other = (self.write.value(part) for part in parts)
+        kind = one.kind
+        if not isinstance(where.kind, Number) or not isinstance(kind, Pointer) or other.kind != kind:
+            raise NoLanesError(f"{kind} or {other.kind}")
+        if where.kind.is_shared:
+            self.write.variables[node.name] = LaneVariable(kind, self.level)
+            text = f"{where.text} ? {one.text} : {other.text}"
+            self._line(f"const {declaration(kind, node.name)} = {text};")
+            return
+        if not isinstance(kind.to, LaneStruct):
+            raise NoLanesError(f"{kind} that differs between lanes")
+        chosen = self._fresh("chosen")
+        self._line(f"{kind.to.name} {chosen} = *{other.text};")
+        self._line(f"{kind.to.name}_put(&{chosen}, *{one.text}, {convert(where, BOOL)});")
+        self.write.variables[node.name] = LaneVariable(kind, self.level)
+        self._line(f"const {declaration(kind, node.name)} = &{chosen};")
 
     def _kind_of_initial(self, node: Any, kind: Kind) -> Kind:
         """Return the kind of a variable: a constant one that all lanes share stays a plain number."""

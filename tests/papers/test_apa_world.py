@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from controller_fmu.parking.chart import ParkingState
-from modelkit.geometry import Box, boxes_gap, corners
+from modelkit.geometry import Box, boxes_gap, corners, outline
+from modelkit.vocabulary import Pose
 from orchestrator.commands.sweep import select_study
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.studies.parking.world import ends
@@ -39,6 +40,24 @@ def test_neighbours_leave_the_slot_free_however_they_stand() -> None:
         length = values["slot.length" if labels["kind"][run] == 0 else "slot.width"][run]
         assert min(p.x for p in sides[1]) == pytest.approx(length, abs=1e-9)
         assert slot > 0.0
+
+
+def test_cars_stand_in_a_row_beyond_the_neighbours() -> None:
+    """All else is as without them, but for where the driver starts; they keep clear of each other and of the start."""
+    alone, made = columns(study(50, 3)), study(50, 3, row_cars=2)
+    values = columns(made)
+    starts = {"vehicle.start.x", "vehicle.start.y"}
+    assert all(
+        np.array_equal(values[name], column, equal_nan=True) for name, column in alone.items() if name not in starts
+    )
+    for run in range(50):
+        row = [box(values, number, run) for number in (7, 5, 1, 2, 6, 8)]
+        car = [values[f"vehicle.car.{name}"][run] for name in ("wheelbase", "front_overhang", "rear_overhang", "width")]
+        pose = Pose(*(values[f"vehicle.start.{axis}"][run] for axis in ("x", "y", "heading")))
+        assert min(boxes_gap(outline(pose, *car), other) for other in row) > 0.3
+        for number in (0, 1, 3, 4):
+            behind, ahead = corners(row[number]), corners(row[number + 1])
+            assert 0.4 <= min(p.x for p in ahead) - max(p.x for p in behind) <= 1.2
 
 
 def test_a_parked_car_touches_nothing_where_it_is_to_stand() -> None:

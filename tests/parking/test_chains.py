@@ -7,11 +7,15 @@ import pytest
 
 from controller_fmu.parking.geometry.outline import extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import (
+    ChainEvent,
+    SideReading,
     as_point,
+    chain_event,
     edge_guess,
     first_of_body,
     is_better,
     is_explained,
+    next_chain,
     same_side,
 )
 from controller_fmu.parking.map.echo_chain import (
@@ -35,7 +39,7 @@ from controller_fmu.parking.map.landmark import (
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.segment_fit import EndGuess, SegmentGuess, fit_segment
-from controller_fmu.parking.measurement.sensor import SensorPose
+from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
 from modelkit.geometry import Box, Point
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
@@ -236,3 +240,13 @@ def test_the_extent_of_the_outline_within_a_box_is_exact() -> None:
     assert (band.low_x, band.high_x) == pytest.approx((1.01, 1.02))
     assert (band.low_y, band.high_y) == pytest.approx((-outline.half_width, outline.half_width))
     assert extent_within(Pose(), outline, Pose(), 1.0, Point(9.0, 9.0), Point(10.0, 10.0)).low_x > 1e8
+
+
+@pytest.mark.parametrize(("measured", "is_edge"), [(3.0, True), (4.8, False)])
+def test_a_side_is_open_where_it_leaves_the_range_of_the_sensor(measured: float, is_edge: bool) -> None:
+    """On a pass oblique to the row a car begins to be measured at 5 m, though it began long before."""
+    echo = SideReading(DOWN, ReadingStatus.ECHO, measured, 1e-4)
+    chain = next_chain(EchoChain(lost=3), echo, ChainEvent.CONTINUES)
+    assert chain.begins_at_edge == is_edge
+    beyond = SideReading(DOWN._replace(x=1.0), ReadingStatus.NO_ECHO, 5.0, 1e-4)
+    assert (chain_event(chain._replace(lost=3), beyond) == ChainEvent.ENDS_AT_EDGE) == is_edge

@@ -128,6 +128,17 @@ def test_two_cars_seen_as_one_from_afar_leave_the_type_open(front: float, is_dec
     assert (log_likelihood_ratio(candidate) > LOG_TEN) == is_decided
 
 
+def test_cars_whose_gaps_are_not_observed_count_as_one_side() -> None:
+    """Two cars along the road are 9.6 m long, three across it 7 m, each with gaps of 0.8 m."""
+    begun = RowMember(6.0, 6.6, 2.8, True, False)
+    for length, is_parallel in ((9.6, True), (7.0, False)):
+        seen = RowMember(-length, 0.0, 2.8, True, True)
+        row = SlotRow(members=(begun, seen, *(RowMember(),) * 6), used=2)
+        ratio = log_likelihood_ratio(SlotCandidate(row=row, behind=seen, ahead=begun))
+        assert (ratio > 0.0) == is_parallel
+        assert abs(ratio) > 1.0
+
+
 def test_a_side_between_two_gaps_is_seen_in_full() -> None:
     """One of its ends was not, so 1 m of it counted as the next car's: too short for any car it showed nothing."""
     members = (RowMember(7.0, 7.8, 2.7, True, False), RowMember(-1.6, 0.0, 2.7, False, True))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import (
     MAX_ECHOES,
+    MAX_EDGE_RANGE,
     ChainEcho,
     EchoChain,
     append_echo,
@@ -122,7 +123,8 @@ def chain_event(chain: EchoChain, reading: SideReading) -> int:
         return ChainEvent.CONTINUES
     if reading.status == ReadingStatus.NO_ECHO:
         passed = is_passed(chain._replace(lost=chain.lost + 1), reading.sensor)
-        return ChainEvent.ENDS_AT_EDGE if passed else ChainEvent.CONTINUES
+        end = ChainEvent.ENDS_AT_EDGE if last_range(chain) < MAX_EDGE_RANGE else ChainEvent.ENDS_HIDDEN
+        return end if passed else ChainEvent.CONTINUES
     if is_turned_back(chain, reading.sensor):
         return ChainEvent.ENDS_HIDDEN
     if continues(chain, reading.sensor, reading.range, reading.variance):
@@ -138,7 +140,7 @@ def next_chain(chain: EchoChain, reading: SideReading, event: int) -> EchoChain:
         lost = chain.lost + 1
         return chain._replace(lost=lost) if event == ChainEvent.CONTINUES else EchoChain(lost=lost)
     if chain.used == 0:
-        return begin_chain(reading.sensor, reading.range, chain.lost > 0)
+        return begin_chain(reading.sensor, reading.range, chain.lost > 0 and reading.range < MAX_EDGE_RANGE)
     if event != ChainEvent.CONTINUES:
         hides = not is_turned_back(chain, reading.sensor) and reading.range < last_range(chain)
         return begin_chain(reading.sensor, reading.range, hides)
@@ -154,13 +156,6 @@ def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
     """Return whether a chain with the echo of ``reading`` is to be fitted."""
     is_echo = reading.status == ReadingStatus.ECHO
     return is_echo and chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES
-
-
-def finish_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
-    """Return landmarks and chain after the last fit of a chain that ends, if it has ``MIN_ECHOES``."""
-    if update.chain.used >= MIN_ECHOES:
-        update = fit_chain(update, reading, ends_at_edge, params)
-    return update
 
 
 def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:

@@ -23,6 +23,8 @@ JUMP_SIGMA = 5.0
 LOST_DISTANCE = 0.25
 """Without an echo over this [m] and ``LOST_ECHOES`` cycles the edge is passed."""
 LOST_ECHOES = 3
+MAX_EDGE_RANGE = 4.5
+"""A side whose outermost echo is farther [m] may go on beyond the range of the sensor."""
 MAX_TURN_COS = 0.95
 """A chain ends when the sensor's axis has turned by 18 deg: it measures another side."""
 

@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.map.chain_update import (
+    MIN_ECHOES,
     ChainEvent,
     ChainUpdate,
     SideReading,
     chain_event,
-    finish_chain,
     fit_chain,
     is_fit_due,
     next_chain,
@@ -146,18 +146,13 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         if index >= 0:
             local_map = with_landmark(local_map, index, oblique.passed[boundary])
     event = chain_event(local_map.chains[at], reading)
-    if not oblique.is_oblique and event != ChainEvent.CONTINUES:
+    ends = not oblique.is_oblique and event != ChainEvent.CONTINUES
+    if ends and local_map.chains[at].used >= MIN_ECHOES:
         ended = ChainUpdate(local_map.landmarks, local_map.chains[at])
-        ended = finish_chain(ended, reading, event == ChainEvent.ENDS_AT_EDGE, params)
+        ended = fit_chain(ended, reading, event == ChainEvent.ENDS_AT_EDGE, params)
         local_map = local_map._replace(landmarks=ended.landmarks)
-    if oblique.is_oblique:
-        local_map = local_map._replace(chains=local_map.chains[:at] + (EchoChain(),) + local_map.chains[at + 1 :])
-    else:
-        local_map = local_map._replace(
-            chains=local_map.chains[:at]
-            + (next_chain(local_map.chains[at], reading, event),)
-            + local_map.chains[at + 1 :]
-        )
+    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], reading, event)
+    local_map = local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
     if is_fit_due(local_map.chains[at], reading):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
         update = fit_chain(update, reading, False, params)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
+from controller_fmu.parking.map.echo_chain import MAX_EDGE_RANGE
 from controller_fmu.parking.map.landmark import (
     Landmark,
     LandmarkType,
@@ -45,8 +46,6 @@ EDGE_JUMP = 0.25
 """Two echoes in a row that differ by more [m] are of two bodies: a boundary point moves by less at each step."""
 MAX_LOST = 3
 """Cycles without an echo that are dropouts."""
-MAX_EDGE_RANGE = 4.5
-"""A side whose outermost echo is farther [m] may go on beyond the range of the sensor."""
 CONE_BOUNDARIES = 2
 """Of a cone: to the left and to the right of its axis."""
 

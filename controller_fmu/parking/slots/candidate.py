@@ -31,18 +31,17 @@ CAR_LENGTH_SIGMA = 0.5
 CAR_WIDTH = 1.8
 CAR_WIDTH_SIGMA = 0.2
 """Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
-PAIR_LENGTH = 4.4
-PAIR_SIGMA = 0.36
-"""Two cars side by side, 0.4 to 1.2 m apart: length [m] over both, standard deviation."""
 RESOLVED_FRONT = 2.0
 MERGING_PENALTY = 0.7
-"""Beyond this distance [m] of a front from the vehicle's middle, 1.2 m from its flank, the echoes of such a pair tell
-the cars apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two. Nearer, gaps of less than
+"""Beyond this distance [m] of a front from the vehicle's middle, 1.2 m from its flank, the echoes of two cars in a row
+tell them apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two. Nearer, gaps of less than
 0.5 m are not observed: one in ten."""
+MAX_MERGED = 4
+"""So many cars in a row at most seem one side."""
 MERGED_LENGTH = 1.0
 """So much [m] of a side that is still being passed may be the next car's: the gap shows when as much is seen of it."""
 MAX_CAR = 6.0
-"""A longer side [m] is a wall, and shows nothing of how cars stand."""
+"""A longer side [m] is of several cars; one twice as long may be a wall, and shows nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 MAX_POST = 0.6
@@ -223,19 +222,28 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
             is_complete = (member.start_known and member.end_known) or is_between_gaps
             if not is_complete:
                 length -= MERGED_LENGTH
-            if length < MAX_CAR:
-                ratio += length_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
-                one = length_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
-                two = length_log_likelihood(length, is_complete, PAIR_LENGTH, PAIR_SIGMA) - merging_penalty(member)
-                ratio -= max(one, two)
+            if length < 2.0 * MAX_CAR:
+                penalty = MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
+                ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, penalty)
+                ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, penalty)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * LOG_TEN
     return ratio
 
 
-def merging_penalty(member: RowMember) -> float:
-    """Return -ln of the probability [1] that two cars side by side, as far off as ``member``, seem one side."""
-    return MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
+def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: float, penalty: float) -> float:
+    """Return the log-likelihood of a side of ``length`` [m] where cars show one of ``car`` [m], one or some that merge.
+
+    Cars in a row stand as far apart as bays are wider than cars; each gap not observed costs ``penalty``.
+    """
+    gap_variance = BAY_SIGMA * BAY_SIGMA - CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA
+    best = -2.0 * LOG_TEN
+    for gaps in range(MAX_MERGED):
+        mean = car + gaps * (car + BAY_WIDTH - CAR_WIDTH)
+        variance = sigma * sigma + gaps * (sigma * sigma + gap_variance)
+        likelihood = length_log_likelihood(length, is_complete, mean, math.sqrt(variance))
+        best = max(best, likelihood - gaps * penalty)
+    return best
 
 
 def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:

@@ -147,17 +147,15 @@ def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: 
     row = SlotRow(frame, side)
     last = NO_MEMBER
     for _ in range(MAX_LANDMARKS):
-        best = RowMember()
-        best_end = -NO_MEMBER
+        best = RowMember(end=-NO_MEMBER)
         for number in range(MAX_LANDMARKS):
             member = side_as_member(landmarks[number], frame, side, params)
             is_of_row = member.end > member.start and member.front < nearest + ROW_DEPTH
-            if is_of_row and best_end < member.end < last:
+            if is_of_row and best.end < member.end < last:
                 best = member
-                best_end = member.end
-        if best_end <= -NO_MEMBER:
+        if best.end <= -NO_MEMBER:
             return row
-        last = best_end
+        last = best.end
         row = _with_next(row, best)
     return row
 

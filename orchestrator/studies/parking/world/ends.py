@@ -172,7 +172,12 @@ def _obstacles(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
     """Return what stands there as the car touches something, and whether it is under the bumpers."""
     boxes = [Obstacle(**{name: row.get(f"{_box(n)}.{name}", start) for name, start in EMPTY.items()}) for n in BOXES]
     time_ns = round(row["touched.time"] * 1e9)
-    there = {THINGS[n]: (obstacle_box(box, time_ns), False) for n, box in enumerate(boxes) if is_there(box, time_ns)}
+    names = (*THINGS[:-1], *(f"car {n}" for n in BOXES[len(THINGS) - 1 :]))
+    there = {
+        name: (obstacle_box(box, time_ns), False)
+        for name, box in zip(names, boxes, strict=True)
+        if is_there(box, time_ns)
+    }
     height = row["vehicle.scene.kerbs[1].height"]
     if height > 0.0:
         ends = (row[f"vehicle.scene.kerbs[1].{end}"] for end in ("x1", "y1", "x2", "y2"))
@@ -180,7 +185,7 @@ def _obstacles(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
     return there
 
 
-BOXES = range(1, len(THINGS))
+BOXES = range(1, len(SceneParams().boxes) + 1)
 EMPTY = Obstacle()._asdict()
 SLOT = ("heading", "length", "width")
 

@@ -41,12 +41,14 @@ WHEEL = SceneParams().tyre_reach
 """Tyres reach this far beyond the axles [m]."""
 WALL_THICKNESS = 1.0
 """Thickness [m]."""
+ROW_GAP, ROW_TURN, ROW_STAGGER = (0.4, 1.2), 5.0, 0.2
+"""Cars beyond the neighbours: between them [m], turned by at most [deg], standing out or back by at most [m]."""
 RUN_UP = 5.0
 """From the start to the first neighbour [m], and what it takes to reach the speed."""
 
 
-def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
-    """Return what differs from run to run, by the names of a study's fields."""
+def parameters(f: F, seeds: Seeds, row_cars: int = 0) -> dict[str, Array]:
+    """Return what differs from run to run, by the names of a study's fields; ``row_cars`` beyond each neighbour."""
     cars = [CARS[name] for name in CARS]
     chosen = f["car"].astype(int)
     reported = _select([car_parameters(car) for car in cars], chosen)
@@ -57,8 +59,9 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     size = {**size, "slot": shortest + f["extra"], "parallel": kind == 0, "sign": 1.0 - 2.0 * f["side"]}
     size["depth"] = np.where(size["parallel"], size["width"] + ISO.deeper, size["length"]) + f["depth"]
     neighbours = _neighbours(f, size)
-    found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
-    found |= _standing(f, size, neighbours) | _start(f, size, neighbours)
+    row = _row(neighbours, size, seeds, row_cars)
+    found |= _boxes(neighbours, size["sign"]) | _row_boxes(row, size["sign"]) | _behind(f, size)
+    found |= _standing(f, size, neighbours) | _start(f, size, row)
     found |= _sensors(f, reported, seeds) | _motion(f, reported)
     return found | _person(f, size) | _mover(f, size) | _sensor_faults(f, reported)
 
@@ -88,8 +91,38 @@ def _neighbours(f: F, size: F) -> dict[str, dict[str, Array]]:
         corner_x = x + 0.5 * (near * along * cos - across * sin)
         outer = y + 0.5 * (across * cos + along * np.abs(sin))
         box = {"x": x, "y": y, "heading": turn, "length": along, "width": across}
-        found[which] = {**box, "corner_x": corner_x, "corner_y": f[f"stagger_{which}"], "outer": outer}
+        edges = {"far": x - near * reach, "outer": outer}
+        found[which] = {**box, "corner_x": corner_x, "corner_y": f[f"stagger_{which}"], **edges}
     return found
+
+
+def _row(neighbours: Mapping[str, F], size: F, seeds: Seeds, row_cars: int) -> list[F]:
+    """Return both neighbours and ``row_cars`` cars beyond each, one of either side at a time.
+
+    Cars beyond are as large as the neighbour; how far apart, turned and staggered they stand follows from the seed.
+    """
+    row = [neighbours["a"], neighbours["b"]]
+    for place in range(row_cars):
+        for side, towards in enumerate((-1.0, 1.0)):
+            draw = np.array([np.random.default_rng([int(seed), 11, place, side]).random(3) for seed in seeds]).T
+            low, high = ROW_GAP
+            inner, turn = row[-2], np.radians(ROW_TURN * (2.0 * draw[1] - 1.0))
+            across = inner["width"] * np.cos(turn) + inner["length"] * np.abs(np.sin(turn))
+            reach = 0.5 * (inner["length"] * np.cos(turn) + inner["width"] * np.abs(np.sin(turn)))
+            x = inner["far"] + towards * (low + (high - low) * draw[0] + reach)
+            outer = ROW_STAGGER * (2.0 * draw[2] - 1.0)
+            box = {"x": x, "y": outer - 0.5 * across, "heading": turn, "length": inner["length"]}
+            row.append({**box, "width": inner["width"], "outer": outer, "far": x + towards * reach})
+    return row
+
+
+def _row_boxes(row: list[F], sign: Array) -> dict[str, Array]:
+    """Return the boxes of the cars beyond both neighbours."""
+    return {
+        f"scene.boxes[{number}].{name}": car[name] * (sign if name in ("y", "heading") else 1.0)
+        for number, car in enumerate(row[2:], start=len(THINGS))
+        for name in ("x", "y", "heading", "length", "width")
+    }
 
 
 def _boxes(neighbours: Mapping[str, F], sign: Array) -> dict[str, Array]:
@@ -161,13 +194,13 @@ def _standing(f: F, size: F, neighbours: Mapping[str, F]) -> dict[str, Array]:
     }
 
 
-def _start(f: F, size: F, neighbours: Mapping[str, F]) -> dict[str, Array]:
+def _start(f: F, size: F, row: list[F]) -> dict[str, Array]:
     """Return where the driver starts, so that the pass is nearest to the row by ``beside``."""
     heading, speed = np.radians(f["heading"]), f["speed"] / 3.6
-    along = np.where(size["parallel"], f["length_a"], f["width_a"])
+    along = np.where(size["parallel"], f["length_a"], f["width_a"]) if len(row) == 2 else -row[-2]["far"]
     start = -along - RUN_UP - speed**2 / (2.0 * _acceleration(f))
-    nearest = np.where(heading > 0.0, -along, size["slot"] + RUN_UP)
-    y = np.maximum(*(item["outer"] for item in neighbours.values())) + f["beside"] + 0.5 * size["width"]
+    nearest = np.where(heading > 0.0, -along, np.maximum(size["slot"] + RUN_UP, row[-1]["far"] if row[2:] else 0.0))
+    y = np.max([item["outer"] for item in row], axis=0) + f["beside"] + 0.5 * size["width"]
     y = y + (start - nearest) * np.tan(heading)
     y = y + np.where(heading > 0.0, 0.5 * size["length"] * np.sin(heading), 0.0)
     return {

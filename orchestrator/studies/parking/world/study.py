@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -45,9 +46,9 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
-    """Return the world; ``mild``: 1 for half the ranges."""
-    world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
+def study(runs: int = 2000, seed: int = 1, mild: int = 0, row_cars: int = 0) -> Study:
+    """Return the world; ``mild``: 1 for half the ranges; ``row_cars``: so many cars beyond each neighbour."""
+    world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS), row_cars)
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
     content: dict[str, Any] = {
@@ -57,9 +58,10 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
         "map": {"x": "extra", "y": "heading", "split": "kind"},
         "seed": seed,
         "mild": mild,
+        **({"row_cars": row_cars} if row_cars else {}),
     }
     shared = scenario()
-    design = Design(fields(), world.values(shares, seeds), seeds, world.values_by_name(shares))
+    design = Design(fields(row_cars), world.values(shares, seeds), seeds, world.values_by_name(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
@@ -82,21 +84,21 @@ def scenario(system: int = APA_SYSTEM) -> Scenario:
     )
 
 
-def fields() -> list[Field]:
+def fields(row_cars: int = 0) -> list[Field]:
     """Return the columns of the design."""
     shared = scenario()
     one = Space(FACTORS, _stack)
-    names = parameters(one.values_by_name(one.nominal()[None]), np.array([1]))
+    names = parameters(one.values_by_name(one.nominal()[None]), np.array([1]), row_cars)
     return [find_field(name, shared) for name in names]
 
 
-def space(factors: list[Factor]) -> Space:
+def space(factors: list[Factor], row_cars: int = 0) -> Space:
     """Return factors and what they mean."""
-    return Space(factors, _stack)
+    return Space(factors, partial(_stack, row_cars=row_cars))
 
 
-def _stack(values: F, seeds: Seeds) -> Array:
-    return np.column_stack(list(parameters(values, seeds).values()))
+def _stack(values: F, seeds: Seeds, row_cars: int = 0) -> Array:
+    return np.column_stack(list(parameters(values, seeds, row_cars).values()))
 
 
 def report(table: Table, folder: Path) -> int:

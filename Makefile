@@ -66,7 +66,7 @@ lint: $(VENV)/.test
 	$(BIN)/python -m tests.vocabulary
 
 types: $(VENV)/.test
-	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim tests
+	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim tests benchmarks docs
 
 BENCH ?=
 bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run; BENCH=--resume goes on with an unfinished one

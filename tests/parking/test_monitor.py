@@ -107,6 +107,19 @@ def test_speed_for_a_distance_is_the_inverse_of_the_stopping_distance(
     assert stopping_distance(speed, delay, deceleration) == pytest.approx(free, abs=1e-9)
 
 
+def test_a_vehicle_that_follows_the_speed_limit_late_is_not_stopped_far_from_a_wall() -> None:
+    params, lag, dt = MonitorParams(), 0.2, 0.01
+    x, speed = 0.0, 0.8
+    for _ in range(1000):
+        motion = VehicleMotion(Pose(x, 0.0, 0.0), 1.0, speed, 0.0, 10.0, params.brake_delay, params.brake_deceleration)
+        seen = monitor_collision(motion, OUTLINE, wall_at(FRONT + 2.0), NOTHING, params, MappingParams())
+        if seen.is_blocked:
+            break
+        speed += (min(seen.speed_limit, 0.8) - speed) * dt / lag
+        x += speed * dt
+    assert 0.04 < 2.0 - x < 0.45
+
+
 def test_a_wall_ahead_stops_and_one_beside_or_behind_does_not() -> None:
     assert verdict(0.8, wall_at(FRONT + 0.2)).is_blocked
     assert verdict(0.8, wall_at(FRONT + 0.2)).is_mapped

@@ -27,6 +27,8 @@ MAX_POSES = 8
 """Poses of the swept outline: over half a metre they are 6 cm apart."""
 LOOK_AHEAD = 0.4
 """The outline is swept this far [m] beyond the stopping distance, so that the speed falls smoothly."""
+SLOWING_FRACTION = 0.5
+"""Of the brake's deceleration: the other half is left for a vehicle that follows the limit late."""
 NO_LIMIT = 100.0
 """Speed [m/s] or distance [m] that is not limited."""
 MIN_APPROACH = 0.005
@@ -114,11 +116,11 @@ def monitor_collision(
         )
         reach = horizon * max_point_speed_ratio(outline, motion.curvature)
         sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), reach)
-        by_map = free_by_map(motion, sweep, landmarks, params, mapping)
         by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
-        by_map = min(by_map, by_echoes)
+        by_map = min(by_echoes, free_by_map(motion, sweep, landmarks, params, mapping))
         free = min(by_map, free_by_echoes(motion, sweep, echoes, True, params))
-    limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, motion.deceleration)
+    slowing = SLOWING_FRACTION * motion.deceleration
+    limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, slowing)
     least = MIN_RESTART_DISTANCE if motion.speed <= 0.0 else stop
     return MonitorVerdict(limit, free < NO_LIMIT and free <= min(least, motion.remaining), free, by_map <= free)
 

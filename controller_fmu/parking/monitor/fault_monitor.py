@@ -91,12 +91,11 @@ def advance_clocks(
         requested = expectation.steering_wheel_angle
         steering = watch_steering(clocks.steering, requested, angle, tolerance, limits.steering_rate, dt_ns)
     waits = still and expectation.moves and not expectation.is_blocked
-    blocked = clocks.blocked + (dt_ns if expectation.is_blocked else 0) if still else 0
     return FaultClocks(
         waiting=clocks.waiting + dt_ns if waits else 0,
         stopping=clocks.stopping + dt_ns if not still and not expectation.moves else 0,
         frozen=clocks.frozen + dt_ns if is_unmoved(inputs.odometry, clocks.pose, speed, dt_ns) else 0,
-        blocked=blocked,
+        blocked=clocks.blocked + (dt_ns if expectation.is_blocked else 0) if still else 0,
         fast=clocks.fast + dt_ns if abs(speed) > expectation.max_speed else 0,
         running=clocks.running + dt_ns,
         steering=steering,

@@ -187,8 +187,7 @@ def lock_of(work: PlanningWork, node: int, problem: SearchProblem) -> float:
 
 def bucket_of(cost: float) -> int:
     """Return the bucket of the queue for a cost [m]."""
-    bucket = math.floor(cost * BUCKETS_PER_METRE)
-    return bucket if bucket < BUCKET_COUNT else BUCKET_COUNT - 1
+    return min(math.floor(cost * BUCKETS_PER_METRE), BUCKET_COUNT - 1)
 
 
 def region_of(pose: Pose, problem: SearchProblem) -> int:

@@ -116,8 +116,9 @@ def monitor_collision(
         )
         reach = horizon * max_point_speed_ratio(outline, motion.curvature)
         sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), reach)
+        by_map = free_by_map(motion, sweep, landmarks, params, mapping)
         by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
-        by_map = min(by_echoes, free_by_map(motion, sweep, landmarks, params, mapping))
+        by_map = min(by_map, by_echoes)
         free = min(by_map, free_by_echoes(motion, sweep, echoes, True, params))
     slowing = SLOWING_FRACTION * motion.deceleration
     limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, slowing)

@@ -12,9 +12,11 @@ from modelkit.geometry import Box, boxes_gap, corners, outline
 from modelkit.vocabulary import Pose
 from orchestrator.commands.sweep import select_study
 from orchestrator.evaluation.verdict.outcome import BEYOND
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.parking.world import ends
 from orchestrator.studies.parking.world.factors import FACTORS
 from orchestrator.studies.parking.world.feasibility import DETECTED_HEIGHT, feasibility_columns
+from orchestrator.studies.parking.world.scene import MAX_ROW_CARS
 from orchestrator.studies.parking.world.study import fields, space, study
 from orchestrator.studies.sweep.repeat import repeat_row
 from orchestrator.studies.sweep.study.study import Study
@@ -58,6 +60,12 @@ def test_cars_stand_in_a_row_beyond_the_neighbours() -> None:
         for number in (0, 1, 3, 4):
             behind, ahead = corners(row[number]), corners(row[number + 1])
             assert 0.4 <= min(p.x for p in ahead) - max(p.x for p in behind) <= 1.2
+
+
+def test_a_row_has_as_many_cars_as_the_scene_has_boxes() -> None:
+    assert len(columns(study(1, 3, row_cars=MAX_ROW_CARS))) > 0
+    with pytest.raises(BadInput, match=f"row_cars: {MAX_ROW_CARS + 1} is more than {MAX_ROW_CARS}"):
+        study(1, 3, row_cars=MAX_ROW_CARS + 1)
 
 
 def test_a_parked_car_touches_nothing_where_it_is_to_stand() -> None:

@@ -43,6 +43,8 @@ WALL_THICKNESS = 1.0
 """Thickness [m]."""
 ROW_GAP, ROW_TURN, ROW_STAGGER = (0.4, 1.2), 5.0, 0.2
 """Cars beyond the neighbours: between them [m], turned by at most [deg], standing out or back by at most [m]."""
+MAX_ROW_CARS = (len(SceneParams().boxes) + 1 - len(THINGS)) // 2
+"""Cars beyond each neighbour: the other boxes of the scene, half on either side."""
 RUN_UP = 5.0
 """From the start to the first neighbour [m], and what it takes to reach the speed."""
 

@@ -15,6 +15,7 @@ from orchestrator.inputs.scenario.fault import Fault
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS, gbt_limits
 from orchestrator.studies.parking.parkings import GBT
@@ -32,7 +33,7 @@ from orchestrator.studies.parking.world.ends import (
     WALKED_INTO,
 )
 from orchestrator.studies.parking.world.factors import FACTORS, NO_SENSOR, NOBODY
-from orchestrator.studies.parking.world.scene import NEVER_TIME, SENSOR_COUNT, F, parameters
+from orchestrator.studies.parking.world.scene import MAX_ROW_CARS, NEVER_TIME, SENSOR_COUNT, F, parameters
 from orchestrator.studies.sweep.fields import Field, find_field
 from orchestrator.studies.sweep.study.design import Design
 from orchestrator.studies.sweep.study.space import Factor, Seeds, Space
@@ -48,6 +49,8 @@ KERB = "kerb"
 
 def study(runs: int = 2000, seed: int = 1, mild: int = 0, row_cars: int = 0) -> Study:
     """Return the world; ``mild``: 1 for half the ranges; ``row_cars``: so many cars beyond each neighbour."""
+    if row_cars > MAX_ROW_CARS:
+        raise BadInput(f"{row_cars} is more than {MAX_ROW_CARS}: the scene has no more boxes", key="row_cars")
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS), row_cars)
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)

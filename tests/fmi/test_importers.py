@@ -1,7 +1,5 @@
 """What an importer reads in the description: few ports, true dependencies, ranges, types, what may change when."""
 
-import random
-import re
 from enum import IntEnum
 from typing import Any
 from xml.etree import ElementTree
@@ -12,11 +10,10 @@ import toy_model
 from controller_fmu import APA, SYSTEM_MODELS
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu.registry import System
-from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
 from fmus.contents.variables import fmi_variables, limits, mode_types
 from modelkit.model import Variant
-from modelkit.variables import constructor, flatten, variables
+from modelkit.variables import variables
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = (toy_model.MODEL, VEHICLE, CONTROLLER, *SYSTEM_MODELS.values())
@@ -146,73 +143,12 @@ def indexed(model: Any) -> Any:
     }
 
 
-def test_dependencies_of_a_small_model_are_those_its_source_has() -> None:
-    found = initial_dependencies(toy_model.MODEL)
-    start = {f"start[{number}].{field}" for number in (1, 2) for field in ("position", "velocity")}
-    drift = {f"drift[{number}].{field}" for number in (1, 2, 3) for field in ("position", "velocity")}
-    assert set(found["oscillators[2].velocity"]) >= start
-    assert set(found["drifted.position"]) >= drift
-    assert not set(found["drifted.position"]) & start
-    assert found["angle"] == found["mode"] == found["pull"] == []
-    assert not {"stiffness", "mass", "seed"} & {name for names in found.values() for name in names}
-
-
-@pytest.mark.parametrize(("model", "most"), [(VEHICLE, 3600), (CONTROLLER, 60)], ids=["Vehicle", "Controller"])
-def test_few_dependencies_take_a_small_part_of_the_description(model: Any, most: Any) -> None:
-    found = indexed(model)
-    assert 0 < sum(map(len, found.values())) < most
-    assert {name: set(names) for name, names in initial_dependencies(model).items() if name in found} == found
-    content = xml(model).decode()
-    structure = content[content.index("<ModelStructure>") :]
-    assert len(structure) < 0.15 * len(content)
-
-
 @pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[System.HSIC]], ids=lambda model: model.name)
-def test_what_changes_an_output_at_the_start_is_named(model: Any) -> None:
-    """Points and moves of its own, drawn otherwise than by the search."""
-    draw = random.Random(99)
-    named = indexed(model)
-    known = variables(model.params, model.first_params())
-    make = constructor(model.params)
-    free = [place for place, item in enumerate(known) if model.shows(item.name)]
-    names = [item.name for item in variables(model.outputs)]
-
-    def start(values: Any) -> Any:
-        return dict(zip(names, flatten(model.initialize(make(values))[1]), strict=True))
-
-    seen = set()
-    for _ in range(150):
-        point = [item.start for item in known]
-        for place in draw.sample(free, len(free) // 3):
-            point[place] = drawn(draw, known[place], point[place])
-        before = start(point)
-        for place in draw.sample(free, 20):
-            moved = list(point)
-            moved[place] = drawn(draw, known[place], point[place])
-            after = start(moved)
-            seen |= {(name, known[place].name) for name in named if after[name] != before[name]}
-    assert len(seen) >= 4
-    assert [pair for pair in seen if pair[1] not in named[pair[0]]] == []
-
-
-def drawn(draw: Any, item: Any, now: Any) -> Any:
-    if item.kind is bool:
-        return draw.random() < 0.5
-    if item.signal.states is not None:
-        return int(draw.choice(list(item.signal.states)))
-    low, high = item.signal.low, item.signal.high
-    spread = max(1.0, abs(now))
-    return item.kind(min(max(now + draw.uniform(-spread, spread), low), high))
-
-
-def test_the_search_gives_the_same_each_time() -> None:
-    assert find_dependencies(SYSTEM_MODELS[System.HSIC]) == find_dependencies(SYSTEM_MODELS[System.HSIC])
-
-
-def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing() -> None:
-    found = indexed(VEHICLE)
-    assert found["speed"] == found["gear"] == found["distance"] == set()
-    assert {"start.x", "body"} <= found["pose.x"]
-    assert "car.steering.ratio" not in found["pose.x"]
-    assert {"scene.boxes[16].x", "ultrasonic.noise", "car.ultrasonic.mounts[3].yaw"} <= found["ultrasonic[3]"]
-    assert not [name for name in found["ultrasonic[3]"] if re.match("drive|steering", name)]
+def test_outputs_depend_at_the_start_on_every_parameter_and_on_no_input(model: Any) -> None:
+    root: Any = ElementTree.fromstring(xml(model))
+    causes = {node.get("name"): node.get("causality") for node in root.find("ModelVariables")}
+    found = indexed(model)
+    assert set(found) == {name for name, causality in causes.items() if causality == "output"}
+    assert all(
+        names == {name for name, causality in causes.items() if causality == "parameter"} for names in found.values()
+    )

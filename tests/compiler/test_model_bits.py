@@ -22,7 +22,7 @@ SCENARIOS = {
     "fault-pose-nan": (),
 }
 """Every system of the controller and every body of the vehicle, with what is set to make the run short."""
-EACH_CHANGE = ("guo2015-case4-105", "zhang2022-double-track", "preview")
+EACH_CHANGE = ("guo2015-case4-105", "zhang2022-double-track")
 """The outputs of the others, at every step, are those of the same C in ``tests/twin/test_same_bits.py``."""
 
 

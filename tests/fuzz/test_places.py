@@ -177,7 +177,9 @@ def test_a_log_in_a_folder_whose_name_is_no_word(command: str, kept: Path, tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [pytest.param("python", marks=pytest.mark.release), "native"])
+@pytest.mark.parametrize(
+    "kind", ["none", *(pytest.param(kind, marks=pytest.mark.release) for kind in ("python", "native"))]
+)
 def test_without_home_in_odd_folders_and_a_narrow_terminal(kind: str, tmp_path: Path) -> None:
     odd = tmp_path / "t %23 + ; é"
     odd.mkdir()

@@ -98,8 +98,10 @@ def test_these_runs_are_parked_within_gbt_with_all_corners_found() -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("number", [62, pytest.param(658, marks=pytest.mark.release)])
+@pytest.mark.release
+@pytest.mark.parametrize("number", [62, 658])
 def test_a_run_is_the_same_in_plain_python(number: int) -> None:
+    """``test_apa_world.py`` has one on each change."""
     chosen = study_of([cases()[number], cases()[0]])
     job = make_job(chosen)
     chunk = Chunk(0, 0, chosen.design.values[:1], chosen.design.seeds[:1])

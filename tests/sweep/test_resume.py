@@ -127,7 +127,7 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
 def test_a_study_may_be_finished_by_another_engine(small: Any, tmp_path: Path) -> None:
     common = ["sweep", str(small), "--no-page", "--chunk", "2", "--set", "stop_time=3", "--out"]
     assert main([*common, str(tmp_path / "batch")]) == 0
-    assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0
+    assert main([*common, str(tmp_path / "fmus"), "--fmus", "native"]) == 0
     tables = [(tmp_path / kind / "trial.parquet").read_bytes() for kind in ("batch", "fmus")]
     assert tables[0] == tables[1]
 

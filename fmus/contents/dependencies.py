@@ -13,7 +13,7 @@ def initial_dependencies(model: Model) -> dict[str, list[str]]:
     outputs, parameters = (
         [item.name for item in variables(group) if model.shows(item.name)] for group in (model.outputs, model.params)
     )
-    found = {}
+    found: dict[str, list[str]] = {}
     for part in [""] if model.assembly is None else [f"{name}." for name, _ in model.assembly.parts]:
         own = [name for name in parameters if name.startswith(part)]
         found |= {name: own for name in outputs if name.startswith(part)}

@@ -193,6 +193,28 @@ def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
         assert edge.x == pytest.approx(end, abs=0.01)
 
 
+def test_a_car_whose_front_a_hitch_hides_is_a_neighbour() -> None:
+    """Only the hitch is measured, and the two corners of the front behind it; the car is the first of its row."""
+    sensed = [(-1.9, -1.5), (-1.0, -1.05), (-0.1, -1.5)]
+    points = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in sensed]
+    landmarks = (*points, side(4.1, -1.5, 0.0, 1.8), *(Landmark(),) * (MAX_LANDMARKS - 4))
+    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+    assert row.used == 2
+    car = row.members[1]
+    assert (car.start + 8.0, car.end + 8.0, car.front) == pytest.approx((-1.9, -0.1, 1.5))
+
+
+def test_of_the_parts_between_posts_the_one_passed_last_counts() -> None:
+    """A hitch stands before a car that is not measured but for its nearer corner: the slot begins at the corner."""
+    cars = [side(-3.7, -1.5, 0.0, 1.8), side(4.2, -1.5, 0.0, 1.8)]
+    posts = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in ((-1.0, -1.1), (0.4, -1.5))]
+    landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 4))
+    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+    slot = find_slot(row, landmarks, LandmarkMap().free_space.right, OUTLINE, SlotParams(), MappingParams())
+    assert row_point(slot.row, slot.behind.end, slot.front).x == pytest.approx(0.4, abs=0.01)
+    assert row_point(slot.row, slot.ahead.start, slot.front).x == pytest.approx(3.3, abs=0.01)
+
+
 def side(x: float, y: float, turn: float, length: float) -> Landmark:
     """A car's side about (x, y), turned by ``turn`` [deg], seen in full."""
     half, sigma = 0.5 * length, math.radians(0.3)

@@ -19,7 +19,16 @@ from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, Landmar
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MAX_MEMBERS, MEMBER_GAP, ROW_DEPTH, UNEVEN_SIGMA, RowMember, SlotRow
+from controller_fmu.parking.slots.row import (
+    MAX_MEMBERS,
+    MEMBER_GAP,
+    NO_MEMBER,
+    ROW_DEPTH,
+    UNEVEN_SIGMA,
+    RowMember,
+    SlotRow,
+    corner_of,
+)
 from modelkit.geometry import Point
 
 UNKNOWN_DEPTH = 50.0
@@ -142,7 +151,8 @@ def _candidate(
     """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
     ahead = row.members[number]
     behind = row.members[min(number + 1, MAX_MEMBERS - 1)]
-    found = _between_posts(SlotCandidate(row=row, behind=behind, ahead=ahead), landmarks, params)
+    found = SlotCandidate(row=row, behind=behind, ahead=ahead)
+    found = _between_posts(found, landmarks, 2.0 * outline.half_width, params)
     behind = found.behind
     ahead = found.ahead
     width = ahead.start - behind.end
@@ -186,27 +196,40 @@ def _front_of(found: SlotCandidate, number: int, half_width: float) -> float:
     return 0.5 * (behind.end_front + ahead.start_front)
 
 
-def _between_posts(found: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
-    """Return a gap as posts in the row, too short to be sides, narrow it."""
-    behind = found.behind
-    ahead = found.ahead
-    for post in landmarks:
-        at = point_to_frame(post.x, post.y, found.row.frame)
-        deep = found.row.side * at.y
-        is_post = post.type == LandmarkType.POINT and is_confirmed(post, params)
-        is_behind = at.x < 0.5 * (found.behind.end + found.ahead.start)
-        if is_post and is_behind and at.x > behind.end + _post_offset(found.row, at.x, deep, behind):
-            behind = behind._replace(end=at.x, end_front=deep, end_length=MIN_INSET)
-        if is_post and not is_behind and at.x < ahead.start - _post_offset(found.row, at.x, deep, ahead):
-            ahead = ahead._replace(start=at.x, start_front=deep, start_length=MIN_INSET)
-    return found._replace(behind=behind, ahead=ahead)
+def _between_posts(
+    found: SlotCandidate, landmarks: tuple[Landmark, ...], least: float, params: MappingParams
+) -> SlotCandidate:
+    """Return a gap as posts in the row, too short to be sides, narrow it: the part passed last, ``least`` [m] wide."""
+    for _ in range(MAX_MEMBERS):
+        post = _last_post(found, landmarks, params)
+        if found.ahead.start - post.x >= least:
+            behind = found.behind._replace(end=post.x, end_front=post.y, end_length=MIN_INSET)
+            return found._replace(behind=behind) if post.x > found.behind.end else found
+        found = found._replace(ahead=found.ahead._replace(start=post.x, start_front=post.y, start_length=MIN_INSET))
+    return found
 
 
-def _post_offset(row: SlotRow, along: float, deep: float, member: RowMember) -> float:
-    """Return how far [m] beside a member a post must stand to be none of its corners; one out of the row never does."""
-    front = member.front if row.slope == 0.0 else row.front_at + row.side * row.slope * along
-    off = deep - front
-    if abs(off) > ROW_DEPTH:
+def _last_post(found: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> Point:
+    """Return where [m] along the row, and how deep, the post in a gap is that was passed last; -``NO_MEMBER``: none."""
+    last = Point(-NO_MEMBER, 0.0)
+    for landmark in landmarks:
+        is_point = landmark.type == LandmarkType.POINT
+        for is_start in (True, False):
+            at = corner_of(landmark, is_start, found.row, params)
+            low = found.behind.end + _post_offset(found.row, at, found.behind, is_point)
+            high = found.ahead.start - _post_offset(found.row, at, found.ahead, is_point)
+            if max(low, last.x) < at.x < high:
+                last = at
+    return last
+
+
+def _post_offset(row: SlotRow, at: Point, member: RowMember, is_point: bool) -> float:
+    """Return how far [m] beside a member a post must stand to be none of its corners; one out of the row never does.
+
+    What is no point is one only at the fronts or before them: deeper it is a part of a flank.
+    """
+    off = at.y - (member.front if row.slope == 0.0 else row.front_at + row.side * row.slope * at.x)
+    if abs(off) > ROW_DEPTH or (off > MIN_INSET and not is_point):
         return UNKNOWN_DEPTH
     return UNEVEN_SIGMA if off > MIN_INSET else MEMBER_GAP
 

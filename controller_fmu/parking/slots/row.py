@@ -19,6 +19,7 @@ from controller_fmu.parking.map.landmark import (
 )
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
+from modelkit.geometry import Point
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -36,6 +37,8 @@ ASKEW_VARIANCE = 0.0025
 """Of the misalignment of cars in a row, by up to 5 deg either way [rad2]."""
 MIN_HEADING_VARIANCE = 1e-6
 """Of a side that claims to be known better [rad2]: the odometry's drift over half a metre."""
+MAX_HIDDEN = 1.2
+"""A hitch hides at most so much [m] of a front to either side: half of a cone of 30 deg, 2 m from the sensor."""
 UNEVEN_SIGMA = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
 NO_MEMBER = 1e9
@@ -137,19 +140,51 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
     )
 
 
+def corner_of(landmark: Landmark, is_start: bool, row: SlotRow, params: MappingParams) -> Point:
+    """Return a known end of a landmark, or a point: along a row, and deep [m]; at ``NO_MEMBER`` if it is not known."""
+    is_known = landmark.type == LandmarkType.POINT or (landmark.start_known if is_start else landmark.end_known)
+    if not is_known or not is_confirmed(landmark, params):
+        return Point(NO_MEMBER, 0.0)
+    end = start_point(landmark) if is_start else end_point(landmark)
+    at = point_to_frame(end.x, end.y, row.frame)
+    return Point(at.x, row.side * at.y)
+
+
+def _hidden_front(
+    landmarks: tuple[Landmark, ...], landmark: Landmark, row: SlotRow, params: MappingParams
+) -> RowMember:
+    """Return the front behind a landmark that stands out of it and hides it, such as a hitch: between its corners."""
+    hitch = corner_of(landmark, True, row, params)
+    first = Point(-NO_MEMBER, 0.0)
+    last = Point(NO_MEMBER, 0.0)
+    for other in landmarks:
+        for is_start in (True, False):
+            corner = corner_of(other, is_start, row, params)
+            if UNEVEN_SIGMA < corner.y - hitch.y < ROW_DEPTH:
+                first = corner if first.x < corner.x < hitch.x else first
+                last = corner if hitch.x < corner.x < last.x else last
+    if hitch.y < 0.0 or hitch.x - first.x > MAX_HIDDEN or last.x - hitch.x > MAX_HIDDEN:
+        return RowMember()
+    return RowMember(first.x, last.x, 0.5 * (first.y + last.y), True, True, first.y, last.y)
+
+
 def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
     """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
+    row = SlotRow(frame, side)
+    sides: tuple[RowMember, ...] = tuple(
+        _hidden_front(landmarks, landmark, row, params)
+        if landmark.type == LandmarkType.POINT
+        else side_as_member(landmark, frame, side, params)
+        for landmark in landmarks
+    )
     nearest = NO_MEMBER
-    for number in range(MAX_LANDMARKS):
-        member = side_as_member(landmarks[number], frame, side, params)
+    for member in sides:
         if member.end > member.start:
             nearest = min(nearest, member.front)
-    row = SlotRow(frame, side)
     last = NO_MEMBER
     for _ in range(MAX_LANDMARKS):
         best = RowMember(end=-NO_MEMBER)
-        for number in range(MAX_LANDMARKS):
-            member = side_as_member(landmarks[number], frame, side, params)
+        for member in sides:
             is_of_row = member.end > member.start and member.front < nearest + ROW_DEPTH
             if is_of_row and best.end < member.end < last:
                 best = member

@@ -8,7 +8,7 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Strategy
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import begin_path
-from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
+from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
@@ -35,7 +35,6 @@ from controller_fmu.parking.obstacle_map import (
     without_inside,
 )
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.perception import planar_distance
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
     PlanningStatus,

@@ -6,7 +6,7 @@ from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenSide, Drive
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
-from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import (
@@ -403,8 +403,3 @@ def search_reason(search: SearchProgress, is_external: bool, params: ParkingPara
 def is_driving_state(state: int) -> bool:
     """Return whether the system drives, or is about to."""
     return state in (ParkingState.STEERING, ParkingState.DRIVING, ParkingState.STOPPING)
-
-
-def planar_distance(ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance [m] of two points."""
-    return math.sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))

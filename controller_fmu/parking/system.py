@@ -21,6 +21,7 @@ from controller_fmu.parking.following.path_tracking import (
     track_path,
 )
 from controller_fmu.parking.following.rolling_steering import standstill_before
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
@@ -60,7 +61,6 @@ from controller_fmu.parking.perception import (
     is_same_gap,
     number_of_choice,
     perceive,
-    planar_distance,
     search_reason,
     search_slots,
     yield_cycles,

@@ -6,6 +6,11 @@ from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 
+def planar_distance(ax: float, ay: float, bx: float, by: float) -> float:
+    """Return the distance [m] of two points."""
+    return math.sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
+
+
 def point_to_frame(x: float, y: float, frame: Pose) -> Point:
     """Return the point (x, y) [m] of the odometry frame in the local ``frame``: R' (p - t)."""
     cos = math.cos(frame.heading)

@@ -8,6 +8,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.map.echo_chain import (
     MAX_ECHOES,
     MAX_EDGE_RANGE,
@@ -228,6 +229,11 @@ def half_gap(echo: ChainEcho, segment: Landmark) -> float:
     return math.sqrt(max(echo.range * echo.range - distance * distance, 0.0))
 
 
+def range_behind(segment: Landmark, echo: ChainEcho) -> float:
+    """Return how much farther [m] an echo is than the segment."""
+    return echo.range - distance_to_segment(segment, echo.x, echo.y)
+
+
 def _fit_part(
     chain: EchoChain, first: int, last: int, reading: SideReading, begins: ChainEnd, ends: ChainEnd
 ) -> SegmentFit:
@@ -239,12 +245,12 @@ def _fit_part(
     start = along_of(line, a.x, a.y)
     end = along_of(line, b.x, b.y)
     towards = 1.0 if start < end else -1.0
-    a_guess = edge_guess(line, a, sensor, towards, _step_at(chain, first, first + 1))
-    b_guess = edge_guess(line, b, sensor, -towards, _step_at(chain, last, last - 1))
-    if not begins.is_edge:
-        a_guess = EndGuess(start, OPEN_SIGMA, begins.inset)
-    if not ends.is_edge:
-        b_guess = EndGuess(end, OPEN_SIGMA, ends.inset)
+    a_guess = EndGuess(start, OPEN_SIGMA, begins.inset)
+    b_guess = EndGuess(end, OPEN_SIGMA, ends.inset)
+    if begins.is_edge:
+        a_guess = edge_guess(line, a, sensor, towards, _step(a, chain.echoes[min(first + 1, MAX_ECHOES - 1)]))
+    if ends.is_edge:
+        b_guess = edge_guess(line, b, sensor, -towards, _step(b, chain.echoes[max(last - 1, 0)]))
     if towards < 0.0:
         guess = SegmentGuess(line, b_guess, a_guess)
         return _as_observed(fit_segment(chain, first, last, guess, reading.variance), b, a, ends, begins)
@@ -276,11 +282,9 @@ def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: flo
     return EndGuess(inwards * (along - 0.5 * step), math.sqrt(opening * opening + step * step / 12.0))
 
 
-def _step_at(chain: EchoChain, outer: int, inner: int) -> float:
-    """Return the distance [m] from an echo at the edge of a chain's part to the next."""
-    a = chain.echoes[outer]
-    b = chain.echoes[min(max(inner, 0), MAX_ECHOES - 1)]
-    return math.sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y))
+def _step(echo: ChainEcho, other: ChainEcho) -> float:
+    """Return the distance [m] between the places of a sensor at two echoes."""
+    return planar_distance(echo.x, echo.y, other.x, other.y)
 
 
 def _with_edges(fit: SegmentFit, first_known: bool, last_known: bool) -> SegmentFit:
@@ -321,8 +325,7 @@ def parting_echo(chain: EchoChain, segment: Landmark) -> int:
         if MIN_PART <= number <= chain.used - MIN_PART:
             total = 0.0
             for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
-                echo = chain.echoes[number + near]
-                total += echo.range - distance_to_segment(segment, echo.x, echo.y)
+                total += range_behind(segment, chain.echoes[number + near])
             if total > best:
                 best = total
                 at = number
@@ -334,8 +337,7 @@ def _hump_top(chain: EchoChain, segment: Landmark, middle: int) -> int:
     top = middle
     most = 0.0
     for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
-        echo = chain.echoes[middle + near]
-        behind = echo.range - distance_to_segment(segment, echo.x, echo.y)
+        behind = range_behind(segment, chain.echoes[middle + near])
         if behind > most:
             most = behind
             top = middle + near
@@ -360,7 +362,7 @@ def split_gain(chain: EchoChain, at: int, segments: tuple[Landmark, Landmark, La
 
 def chi_square_of(segment: Landmark, echo: ChainEcho, variance: float) -> float:
     """Return the squared residual of an echo over its ``variance`` [m2], limited so that no outlier decides."""
-    residual = echo.range - distance_to_segment(segment, echo.x, echo.y)
+    residual = range_behind(segment, echo)
     return min(residual * residual / variance, ROBUST_SIGMA * ROBUST_SIGMA)
 
 
@@ -379,9 +381,8 @@ def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParam
     unsure direction is none: the chain went round a corner. A direction is that of the chain's middle; from there to
     its end the odometry drifts over half of its path.
     """
-    new = fit.landmark._replace(
-        confirmations=echoes, hh=fit.landmark.hh + 0.5 * chain_path(update.chain, echoes) * params.heading_variance
-    )
+    path = _step(update.chain.echoes[max(echoes - 1, 0)], update.chain.echoes[0])
+    new = fit.landmark._replace(confirmations=echoes, hh=fit.landmark.hh + 0.5 * path * params.heading_variance)
     update = update._replace(chain=update.chain._replace(fitted=update.chain.used))
     if new.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(new) > MIN_SURE_LENGTH:
         return update
@@ -398,13 +399,6 @@ def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParam
             index = other if other >= 0 else free_index(landmarks)
         landmarks = replace_landmark(landmarks, index, new)
     return ChainUpdate(landmarks, update.chain._replace(landmark=-1 if is_known else index))
-
-
-def chain_path(chain: EchoChain, echoes: int) -> float:
-    """Return the distance [m] from the first of so many ``echoes`` to the last."""
-    first = chain.echoes[0]
-    last = chain.echoes[max(echoes - 1, 0)]
-    return math.sqrt((last.x - first.x) * (last.x - first.x) + (last.y - first.y) * (last.y - first.y))
 
 
 def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params: MappingParams) -> int:

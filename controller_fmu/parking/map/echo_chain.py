@@ -8,6 +8,7 @@ one that ends in a nearer echo was only hidden.
 import math
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.measurement.sensor import SensorPose
 
 MAX_ECHOES = 96
@@ -67,9 +68,8 @@ def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: f
     for back in range(1, SLOPE_ECHOES + 1):
         if back == 1 or back <= chain.used:
             before = chain.echoes[max(chain.used - back, 0)]
-            dx = sensor.x - before.x
-            dy = sensor.y - before.y
-            jump = abs(measured - before.range) - MAX_SLOPE * math.sqrt(dx * dx + dy * dy)
+            step = planar_distance(sensor.x, sensor.y, before.x, before.y)
+            jump = abs(measured - before.range) - MAX_SLOPE * step
             if jump >= JUMP_SIGMA * math.sqrt(2.0 * variance):
                 return False
     return True
@@ -90,28 +90,20 @@ def is_turned_back(chain: EchoChain, sensor: SensorPose) -> bool:
 def is_passed(chain: EchoChain, sensor: SensorPose) -> bool:
     """Return whether a sensor that measures no echo any more has passed the chain's body."""
     last = chain.echoes[max(chain.used - 1, 0)]
-    dx = sensor.x - last.x
-    dy = sensor.y - last.y
-    return chain.lost >= LOST_ECHOES and dx * dx + dy * dy > LOST_DISTANCE * LOST_DISTANCE
+    return chain.lost >= LOST_ECHOES and planar_distance(sensor.x, sensor.y, last.x, last.y) > LOST_DISTANCE
 
 
 def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> EchoChain:
     """Return a chain of one echo at ``measured`` [m]; ``begins_at_edge``: before it was a farther echo, or none."""
     first = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
-    return EchoChain(
-        used=1,
-        echoes=(first,) * MAX_ECHOES,
-        begins_at_edge=begins_at_edge,
-    )
+    return EchoChain(used=1, echoes=(first,) * MAX_ECHOES, begins_at_edge=begins_at_edge)
 
 
 def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoChain:
     """Return the chain with one more echo at ``measured`` [m], if the sensor has moved."""
     last = chain.echoes[max(chain.used - 1, 0)]
-    dx = sensor.x - last.x
-    dy = sensor.y - last.y
     chain = chain._replace(lost=0)
-    if dx * dx + dy * dy < chain.spacing * chain.spacing:
+    if planar_distance(sensor.x, sensor.y, last.x, last.y) < chain.spacing:
         return chain
     if chain.used >= MAX_ECHOES:
         chain = _thin(chain)

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 
 MAX_RAYS = 80
@@ -31,9 +32,8 @@ class FreeSpace(NamedTuple):
 
 def is_next_ray(last: Ray, ray: Ray) -> bool:
     """Return whether a ray is kept after the ``last`` one of its side: its sensor has moved far enough."""
-    dx = ray.sensor.x - last.sensor.x
-    dy = ray.sensor.y - last.sensor.y
-    return last.range <= 0.0 or dx * dx + dy * dy >= RAY_SPACING * RAY_SPACING
+    moved = planar_distance(ray.sensor.x, ray.sensor.y, last.sensor.x, last.sensor.y)
+    return last.range <= 0.0 or moved >= RAY_SPACING
 
 
 def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:

@@ -88,30 +88,36 @@ def offset_variance(landmark: Landmark, along: float) -> float:
     return across + 2.0 * along * lever + along * along * landmark.hh
 
 
+def with_offset_variance(landmark: Landmark, variance: float) -> Landmark:
+    """Return a landmark with ``variance`` [m2] more across its direction."""
+    nx = -math.sin(landmark.heading)
+    ny = math.cos(landmark.heading)
+    return landmark._replace(
+        xx=landmark.xx + variance * nx * nx,
+        xy=landmark.xy + variance * nx * ny,
+        yy=landmark.yy + variance * ny * ny,
+    )
+
+
 def segment_between(a: Point, b: Point, viewer: Point, variance: float, end_variance: float) -> Landmark:
     """Return the segment between two points [m], the ``viewer`` on its left, its variances [m2] across and along."""
     dx = b.x - a.x
     dy = b.y - a.y
     towards = 1.0 if dx * (viewer.y - a.y) - dy * (viewer.x - a.x) > 0.0 else -1.0
-    heading = math.atan2(towards * dy, towards * dx)
-    nx = -math.sin(heading)
-    ny = math.cos(heading)
     square = dx * dx + dy * dy
     half = 0.5 * math.sqrt(square)
-    return Landmark(
+    segment = Landmark(
         type=LandmarkType.SEGMENT,
         x=0.5 * (a.x + b.x),
         y=0.5 * (a.y + b.y),
-        heading=heading,
-        xx=variance * nx * nx,
-        xy=variance * nx * ny,
-        yy=variance * ny * ny,
+        heading=math.atan2(towards * dy, towards * dx),
         hh=4.0 * variance / max(square, variance),
         start=-half,
         end=half,
         start_variance=end_variance,
         end_variance=end_variance,
     )
+    return with_offset_variance(segment, variance)
 
 
 def replace_landmark(landmarks: tuple[Landmark, ...], index: int, landmark: Landmark) -> tuple[Landmark, ...]:

@@ -1,8 +1,8 @@
 """The map of one drive: prediction, association, update, initialisation and deletion at each measurement cycle."""
 
-import math
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.map.chain_update import (
     MIN_ECHOES,
     ChainEvent,
@@ -85,14 +85,8 @@ def update_map(
     local_map: LandmarkMap, readings: tuple[float, ...], pose: Pose, sensors: CarUltrasonic, params: MappingParams
 ) -> LandmarkMap:
     """Return the map after one measurement cycle: ``readings`` [m] of all sensors of a vehicle at ``pose``."""
-    dx = pose.x - local_map.pose.x
-    dy = pose.y - local_map.pose.y
-    driven = math.sqrt(dx * dx + dy * dy) if local_map.begun else 0.0
-    local_map = local_map._replace(
-        pose=pose,
-        distance=local_map.distance + driven,
-        begun=True,
-    )
+    driven = planar_distance(pose.x, pose.y, local_map.pose.x, local_map.pose.y) if local_map.begun else 0.0
+    local_map = local_map._replace(pose=pose, distance=local_map.distance + driven, begun=True)
     for number in range(MAX_LANDMARKS):
         if local_map.landmarks[number].type != LandmarkType.NONE:
             after = predict_landmark(local_map.landmarks[number], pose, driven, params)
@@ -113,11 +107,10 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
         local_map = _use_side(local_map, measurement, params)
     if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = contradict_nearer(local_map, measurement, params)
+        local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
     else:
         missed = count_missed_echo(local_map.missed, measurement.number, status, status == ReadingStatus.INVALID)
         local_map = local_map._replace(missed=missed)
-    if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
-        local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
     return _without_deleted(local_map)
 
 
@@ -125,12 +118,15 @@ def _without_deleted(local_map: LandmarkMap) -> LandmarkMap:
     """Return the map whose chains refer to no deleted landmark: its place may be taken by another one."""
     for number in range(SIDE_SENSORS):
         chain = local_map.chains[number]
-        at = max(chain.landmark, 0)
-        if chain.landmark >= 0 and local_map.landmarks[at].type == LandmarkType.NONE:
-            local_map = local_map._replace(
-                chains=local_map.chains[:number] + (chain._replace(landmark=-1),) + local_map.chains[number + 1 :]
-            )
+        if chain.landmark >= 0 and local_map.landmarks[max(chain.landmark, 0)].type == LandmarkType.NONE:
+            local_map = _with_chain(local_map, number, chain._replace(landmark=-1))
     return local_map
+
+
+def _with_chain(local_map: LandmarkMap, number: int, chain: EchoChain) -> LandmarkMap:
+    """Return the map with the chain of a sensor on a flank replaced."""
+    at = min(max(number, 0), SIDE_SENSORS - 1)
+    return local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
 
 
 def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
@@ -152,14 +148,12 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         ended = fit_chain(ended, reading, event == ChainEvent.ENDS_AT_EDGE, params)
         local_map = local_map._replace(landmarks=ended.landmarks)
     chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], reading, event)
-    local_map = local_map._replace(chains=local_map.chains[:at] + (chain,) + local_map.chains[at + 1 :])
+    local_map = _with_chain(local_map, at, chain)
     if is_fit_due(local_map.chains[at], reading):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
         update = fit_chain(update, reading, False, params)
-        local_map = local_map._replace(
-            landmarks=update.landmarks,
-            chains=local_map.chains[:at] + (update.chain,) + local_map.chains[at + 1 :],
-        )
+        local_map = local_map._replace(landmarks=update.landmarks)
+        local_map = _with_chain(local_map, at, update.chain)
     return local_map
 
 
@@ -197,12 +191,12 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
     A sensor that misses one expected echo after the other may be silent: then it contradicts nothing any more.
     """
     sensor = measurement.sensor
-    is_credible = measurement.status == ReadingStatus.ECHO or is_credible_miss(local_map.missed, measurement.number)
+    is_echo = measurement.status == ReadingStatus.ECHO
+    is_credible = is_echo or is_credible_miss(local_map.missed, measurement.number)
     is_missed = False
     for number in range(MAX_LANDMARKS):
         if is_in_reach(local_map.landmarks[number], sensor, measurement.range + CONFIRMING_RANGE):
             landmark = local_map.landmarks[number]
-            is_echo = measurement.status == ReadingStatus.ECHO
             after = landmark
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)

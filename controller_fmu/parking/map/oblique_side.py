@@ -11,6 +11,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
 from controller_fmu.parking.map.echo_chain import MAX_EDGE_RANGE
@@ -21,6 +22,7 @@ from controller_fmu.parking.map.landmark import (
     free_index,
     offset_of,
     offset_variance,
+    with_offset_variance,
 )
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
@@ -139,9 +141,7 @@ def is_over(run: BoundaryRun, status: int, point: Point, measured: float, varian
         return run.lost + 1 >= MAX_LOST
     if status != ReadingStatus.ECHO or abs(measured - run.range) > EDGE_JUMP:
         return True
-    dx = point.x - run.last.x
-    dy = point.y - run.last.y
-    if dx * dx + dy * dy > MAX_SPACING * MAX_SPACING:
+    if planar_distance(point.x, point.y, run.last.x, run.last.y) > MAX_SPACING:
         return True
     if run.sums.n < 3:
         return False
@@ -160,9 +160,7 @@ def next_run(
     if over or run.sums.n == 0:
         begun = BoundaryRun(sensor=sensor, begins=side_ending(measured, run.range))
         return with_point(begun, point, measured)
-    dx = point.x - run.last.x
-    dy = point.y - run.last.y
-    if run.sums.n > 0 and dx * dx + dy * dy < MIN_SPACING * MIN_SPACING:
+    if planar_distance(point.x, point.y, run.last.x, run.last.y) < MIN_SPACING:
         return run._replace(lost=0)
     return with_point(run, point, measured)
 
@@ -188,20 +186,15 @@ def line_of(run: BoundaryRun, variance: float) -> Landmark:
     heading = 0.5 * math.atan2(2.0 * points.xy, difference)
     root = math.sqrt(difference * difference + 4.0 * points.xy * points.xy)
     along = 0.5 * (points.xx + points.yy + root)
-    nx = -math.sin(heading)
-    ny = math.cos(heading)
-    across = variance / float(max(points.n, 1))
-    return Landmark(
+    line = Landmark(
         type=LandmarkType.SEGMENT,
         x=run.first.x + points.x,
         y=run.first.y + points.y,
         heading=heading,
-        xx=across * nx * nx,
-        xy=across * nx * ny,
-        yy=across * ny * ny,
         hh=variance / max(along, variance),
         confirmations=run.sums.n,
     )
+    return with_offset_variance(line, variance / float(max(points.n, 1)))
 
 
 def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, variance: float) -> Landmark:
@@ -243,9 +236,7 @@ def _is_turned(run: BoundaryRun, sensor: SensorPose) -> bool:
     """Return whether a sensor has turned so far over a run that its points may lie obliquely for that alone."""
     before = run.sensor
     turn = abs(before.axis_x * sensor.axis_y - before.axis_y * sensor.axis_x)
-    dx = sensor.x - before.x
-    dy = sensor.y - before.y
-    return turn * run.range > OBLIQUE_MARGIN * math.sqrt(dx * dx + dy * dy)
+    return turn * run.range > OBLIQUE_MARGIN * planar_distance(sensor.x, sensor.y, before.x, before.y)
 
 
 def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: float) -> Landmark:
@@ -255,13 +246,8 @@ def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: f
     """
     opening = CONE_TANGENT * math.sin(off_boundary)
     shift = opening * measured
-    nx = -math.sin(side.heading)
-    ny = math.cos(side.heading)
     end_variance = CONE_TANGENT * CONE_TANGENT * measured * measured
-    return side._replace(
-        xx=side.xx + shift * shift * nx * nx,
-        xy=side.xy + shift * shift * nx * ny,
-        yy=side.yy + shift * shift * ny * ny,
+    return with_offset_variance(side, shift * shift)._replace(
         hh=side.hh + opening * opening * math.sin(angle) * math.sin(angle),
         start_variance=end_variance,
         end_variance=end_variance,

@@ -14,7 +14,8 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import MAX_ECHOES, EchoChain
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType, with_offset_variance
+from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 
 MAX_ITERATIONS = 5
@@ -33,6 +34,8 @@ LEAST_WEIGHT = 1e-9
 """Of an unknown that no echo determines."""
 MIN_EXTENT = 0.02
 """Shortest segment [m]."""
+STATE_COUNT = 4
+"""Of a segment, in this order: shift c [m], turn q [rad], start and end [m]."""
 
 
 class EndGuess(NamedTuple):
@@ -53,31 +56,11 @@ class SegmentGuess(NamedTuple):
 
 
 class NormalEquations(NamedTuple):
-    """J'WJ (upper triangle) and J'Wr of shift c, turn q, start a and end b; ``chi_square``: the weighted residuals."""
+    """J'WJ by rows and J'Wr of the ``STATE_COUNT``; ``chi_square``: the weighted residuals."""
 
-    cc: float = 0.0
-    cq: float = 0.0
-    ca: float = 0.0
-    cb: float = 0.0
-    qq: float = 0.0
-    qa: float = 0.0
-    qb: float = 0.0
-    aa: float = 0.0
-    bb: float = 0.0
-    rc: float = 0.0
-    rq: float = 0.0
-    ra: float = 0.0
-    rb: float = 0.0
+    matrix: tuple[float, ...] = (0.0,) * (STATE_COUNT * STATE_COUNT)
+    right: tuple[float, ...] = (0.0,) * STATE_COUNT
     chi_square: float = 0.0
-
-
-class SegmentStep(NamedTuple):
-    """A change of shift [m], turn [rad], start and end [m]."""
-
-    shift: float
-    turn: float
-    start: float
-    end: float
 
 
 class SegmentFit(NamedTuple):
@@ -102,20 +85,9 @@ def fit_segment(chain: EchoChain, first: int, last: int, guess: SegmentGuess, va
     for _ in range(MAX_ITERATIONS):
         normal = _normal_equations(chain, first, last, segment, guess, variance)
         normal = _with_turn_prior(normal, wrap_angle(heading - segment.heading))
-        step = solve(normal, normal.rc, normal.rq, normal.ra, normal.rb)
+        step = solve(normal, normal.right)
         segment = _apply_step(segment, step)
     return SegmentFit(_with_covariance(segment, normal), normal.chi_square)
-
-
-class EchoRow(NamedTuple):
-    """A row of the Jacobian: derivatives of a predicted range by shift, turn, start and end; residual [m], weight."""
-
-    shift: float
-    turn: float
-    start: float
-    end: float
-    residual: float
-    weight: float
 
 
 def _normal_equations(
@@ -126,7 +98,9 @@ def _normal_equations(
     end = guess.end
     aa = 1.0 / (start.sigma * start.sigma)
     bb = 1.0 / (end.sigma * end.sigma)
-    normal = NormalEquations(aa=aa, bb=bb, ra=(start.along - segment.start) * aa, rb=(end.along - segment.end) * bb)
+    matrix = tuple(aa if number == 10 else (bb if number == 15 else 0.0) for number in range(STATE_COUNT * STATE_COUNT))
+    right = (0.0, 0.0, (start.along - segment.start) * aa, (end.along - segment.end) * bb)
+    normal = NormalEquations(matrix, right)
     cos = math.cos(segment.heading)
     sin = math.sin(segment.heading)
     for number in range(MAX_ECHOES):
@@ -134,80 +108,66 @@ def _normal_equations(
             echo = chain.echoes[number]
             dx = echo.x - segment.x
             dy = echo.y - segment.y
-            row = _echo_row(dx * cos + dy * sin, dy * cos - dx * sin, echo.range, segment, variance)
-            normal = _with_row(normal, row)
+            at = Point(dx * cos + dy * sin, dy * cos - dx * sin)
+            normal = _with_echo(normal, at, echo.range, segment, variance)
     return normal
 
 
-def _echo_row(u: float, v: float, measured: float, segment: Landmark, variance: float) -> EchoRow:
-    """Return the row of an echo measured at (u, v) [m] in the segment's frame; its weight is robust."""
-    t = min(max(u, segment.start), segment.end)
-    h = max(math.sqrt((u - t) * (u - t) + v * v), MIN_EXTENT)
+def _with_echo(
+    normal: NormalEquations, at: Point, measured: float, segment: Landmark, variance: float
+) -> NormalEquations:
+    """Return the normal equations with an echo measured ``at`` (u, v) [m] in the segment's frame, of robust weight."""
+    t = min(max(at.x, segment.start), segment.end)
+    h = max(math.sqrt((at.x - t) * (at.x - t) + at.y * at.y), MIN_EXTENT)
     residual = measured - h
     weight = 1.0 / (variance + residual * residual / (ROBUST_SIGMA * ROBUST_SIGMA))
-    across = -v / h
-    along = -(u - t) / h
-    return EchoRow(
-        across,
-        across * t,
-        along if u < segment.start else 0.0,
-        along if u > segment.end else 0.0,
-        residual,
-        weight,
-    )
-
-
-def _with_row(normal: NormalEquations, row: EchoRow) -> NormalEquations:
-    """Return the normal equations with one more echo."""
-    w = row.weight
-    r = row.residual
+    across = -at.y / h
+    along = -(at.x - t) / h
+    row = (across, across * t, along if at.x < segment.start else 0.0, along if at.x > segment.end else 0.0)
     return NormalEquations(
-        normal.cc + w * row.shift * row.shift,
-        normal.cq + w * row.shift * row.turn,
-        normal.ca + w * row.shift * row.start,
-        normal.cb + w * row.shift * row.end,
-        normal.qq + w * row.turn * row.turn,
-        normal.qa + w * row.turn * row.start,
-        normal.qb + w * row.turn * row.end,
-        normal.aa + w * row.start * row.start,
-        normal.bb + w * row.end * row.end,
-        normal.rc + w * row.shift * r,
-        normal.rq + w * row.turn * r,
-        normal.ra + w * row.start * r,
-        normal.rb + w * row.end * r,
-        normal.chi_square + w * r * r,
+        tuple(
+            normal.matrix[number] + weight * row[number // STATE_COUNT] * row[number % STATE_COUNT]
+            for number in range(STATE_COUNT * STATE_COUNT)
+        ),
+        tuple(normal.right[number] + weight * row[number] * residual for number in range(STATE_COUNT)),
+        normal.chi_square + weight * residual * residual,
     )
 
 
 def _with_turn_prior(normal: NormalEquations, turn: float) -> NormalEquations:
     """Return the equations with the initial direction, ``turn`` [rad] off the present one, as a measurement."""
     weight = 1.0 / (ASKEW_SIGMA * ASKEW_SIGMA)
-    return normal._replace(qq=normal.qq + weight, rq=normal.rq + weight * turn, cc=normal.cc + 1.0)
+    m = normal.matrix
+    c, q, a, b = normal.right
+    return normal._replace(matrix=(m[0] + 1.0,) + m[1:5] + (m[5] + weight,) + m[6:], right=(c, q + weight * turn, a, b))
 
 
-def solve(normal: NormalEquations, rc: float, rq: float, ra: float, rb: float) -> SegmentStep:
-    """Return the step [m, rad] for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
-    aa = max(normal.aa, LEAST_WEIGHT)
-    bb = max(normal.bb, LEAST_WEIGHT)
-    cc = normal.cc - normal.ca * normal.ca / aa - normal.cb * normal.cb / bb
-    cq = normal.cq - normal.ca * normal.qa / aa - normal.cb * normal.qb / bb
-    qq = normal.qq - normal.qa * normal.qa / aa - normal.qb * normal.qb / bb
-    c = rc - normal.ca * ra / aa - normal.cb * rb / bb
-    q = rq - normal.qa * ra / aa - normal.qb * rb / bb
+def solve(normal: NormalEquations, right: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the unknowns [m, rad] for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
+    m = normal.matrix
+    ca = m[2]
+    cb = m[3]
+    qa = m[6]
+    qb = m[7]
+    aa = max(m[10], LEAST_WEIGHT)
+    bb = max(m[15], LEAST_WEIGHT)
+    cc = m[0] - ca * ca / aa - cb * cb / bb
+    cq = m[1] - ca * qa / aa - cb * qb / bb
+    qq = m[5] - qa * qa / aa - qb * qb / bb
+    c = right[0] - ca * right[2] / aa - cb * right[3] / bb
+    q = right[1] - qa * right[2] / aa - qb * right[3] / bb
     determinant = max(cc * qq - cq * cq, LEAST_WEIGHT)
     shift = (qq * c - cq * q) / determinant
     turn = (cc * q - cq * c) / determinant
-    start = (ra - normal.ca * shift - normal.qa * turn) / aa
-    end = (rb - normal.cb * shift - normal.qb * turn) / bb
-    return SegmentStep(shift, turn, start, end)
+    return (shift, turn, (right[2] - ca * shift - qa * turn) / aa, (right[3] - cb * shift - qb * turn) / bb)
 
 
-def _apply_step(segment: Landmark, step: SegmentStep) -> Landmark:
+def _apply_step(segment: Landmark, step: tuple[float, ...]) -> Landmark:
     """Return the segment changed by a step of bounded size."""
-    shift = min(max(step.shift, -MAX_SHIFT), MAX_SHIFT)
-    turn = min(max(step.turn, -MAX_TURN), MAX_TURN)
-    start = segment.start + min(max(step.start, -MAX_SHIFT), MAX_SHIFT)
-    end = segment.end + min(max(step.end, -MAX_SHIFT), MAX_SHIFT)
+    shift = min(max(step[0], -MAX_SHIFT), MAX_SHIFT)
+    turn = min(max(step[1], -MAX_TURN), MAX_TURN)
+    start = segment.start + min(max(step[2], -MAX_SHIFT), MAX_SHIFT)
+    end = segment.end + min(max(step[3], -MAX_SHIFT), MAX_SHIFT)
     if end < start + MIN_EXTENT:
         start = 0.5 * (start + end - MIN_EXTENT)
         end = start + MIN_EXTENT
@@ -222,21 +182,14 @@ def _apply_step(segment: Landmark, step: SegmentStep) -> Landmark:
 
 def _with_covariance(segment: Landmark, normal: NormalEquations) -> Landmark:
     """Return the segment with the inverse of its normal matrix as covariance."""
-    nx = -math.sin(segment.heading)
-    ny = math.cos(segment.heading)
-    of_shift = solve(normal, 1.0, 0.0, 0.0, 0.0)
-    of_turn = solve(normal, 0.0, 1.0, 0.0, 0.0)
-    of_start = solve(normal, 0.0, 0.0, 1.0, 0.0)
-    of_end = solve(normal, 0.0, 0.0, 0.0, 1.0)
-    across = of_shift.shift + SURFACE_DEVIATION * SURFACE_DEVIATION
+    of_shift = solve(normal, (1.0, 0.0, 0.0, 0.0))
+    of_turn = solve(normal, (0.0, 1.0, 0.0, 0.0))
+    segment = with_offset_variance(segment, of_shift[0] + SURFACE_DEVIATION * SURFACE_DEVIATION)
     return segment._replace(
         type=LandmarkType.SEGMENT,
-        xx=across * nx * nx,
-        xy=across * nx * ny,
-        yy=across * ny * ny,
-        xh=of_shift.turn * nx,
-        yh=of_shift.turn * ny,
-        hh=of_turn.turn,
-        start_variance=of_start.start,
-        end_variance=of_end.end,
+        xh=of_shift[1] * -math.sin(segment.heading),
+        yh=of_shift[1] * math.cos(segment.heading),
+        hh=of_turn[1],
+        start_variance=solve(normal, (0.0, 0.0, 1.0, 0.0))[2],
+        end_variance=solve(normal, (0.0, 0.0, 0.0, 1.0))[3],
     )

@@ -9,7 +9,8 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.polygons import Vertex, next_index
+from controller_fmu.parking.geometry.frames import planar_distance
+from controller_fmu.parking.geometry.polygons import SegmentPart, Vertex, next_index
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from modelkit.geometry import NO_HIT, Point
 
@@ -49,56 +50,38 @@ def direction_of(predicted: PredictedRange, sensor: SensorPose) -> Point:
     return Point((predicted.x - sensor.x) / predicted.distance, (predicted.y - sensor.y) / predicted.distance)
 
 
-class _InBeam(NamedTuple):
-    """The part of a segment inside a cone, as fractions of its length; low > high: none."""
-
-    low: float
-    high: float
-
-
 def predict_range_to_point(sensor: SensorPose, x: float, y: float) -> PredictedRange:
     """Return the predicted range to the point (x, y) [m]; its origin is ``START``."""
     if not in_field_of_view(sensor, x, y):
         return PredictedRange()
-    dx = x - sensor.x
-    dy = y - sensor.y
-    return PredictedRange(math.sqrt(dx * dx + dy * dy), EchoOrigin.START, x, y)
+    return PredictedRange(planar_distance(x, y, sensor.x, sensor.y), EchoOrigin.START, x, y)
 
 
 def predict_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> PredictedRange:
     """Return the predicted range to the segment from ``a`` (start) to ``b`` (end) [m]."""
     beam = _part_in_beam(sensor, a, b)
-    if beam.low > beam.high:
+    if beam.enter > beam.leave:
         return PredictedRange()
     dx = b.x - a.x
     dy = b.y - a.y
     square = dx * dx + dy * dy
     foot = ((sensor.x - a.x) * dx + (sensor.y - a.y) * dy) / square if square > 0.0 else 0.0
     origin = EchoOrigin.INTERIOR
-    if foot <= beam.low:
-        foot = beam.low
-        origin = EchoOrigin.START if beam.low <= 0.0 else EchoOrigin.CONE_EDGE
-    elif foot >= beam.high:
-        foot = beam.high
-        origin = EchoOrigin.END if beam.high >= 1.0 else EchoOrigin.CONE_EDGE
+    if foot <= beam.enter:
+        foot = beam.enter
+        origin = EchoOrigin.START if beam.enter <= 0.0 else EchoOrigin.CONE_EDGE
+    elif foot >= beam.leave:
+        foot = beam.leave
+        origin = EchoOrigin.END if beam.leave >= 1.0 else EchoOrigin.CONE_EDGE
     x = a.x + foot * dx
     y = a.y + foot * dy
-    px = x - sensor.x
-    py = y - sensor.y
     length = math.sqrt(square)
     surface = Point(dx / length, dy / length) if length > 0.0 else Point(0.0, 0.0)
-    return PredictedRange(
-        math.sqrt(px * px + py * py),
-        int(origin),
-        x,
-        y,
-        surface,
-        -foot * length,
-        (1.0 - foot) * length,
-    )
+    distance = planar_distance(x, y, sensor.x, sensor.y)
+    return PredictedRange(distance, int(origin), x, y, surface, -foot * length, (1.0 - foot) * length)
 
 
-def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> _InBeam:
+def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> SegmentPart:
     """Return the part of a segment with |across| cos <= along sin in the sensor's frame."""
     ax = (a.x - sensor.x) * sensor.axis_x + (a.y - sensor.y) * sensor.axis_y
     ay = (a.y - sensor.y) * sensor.axis_x - (a.x - sensor.x) * sensor.axis_y
@@ -110,12 +93,12 @@ def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> _InBeam:
         at_a = ax * sensor.cone_sin + side * ay * sensor.cone_cos
         at_b = bx * sensor.cone_sin + side * by * sensor.cone_cos
         if at_a < 0.0 and at_b < 0.0:
-            return _InBeam(1.0, 0.0)
+            return SegmentPart(1.0, 0.0)
         if at_a < 0.0:
             low = max(low, at_a / (at_a - at_b))
         elif at_b < 0.0:
             high = min(high, at_a / (at_a - at_b))
-    return _InBeam(low, high)
+    return SegmentPart(low, high)
 
 
 def range_to_polygons(sensor: SensorPose, vertices: tuple[Vertex, ...], max_range: float) -> PredictedRange:

@@ -75,10 +75,9 @@ def update_track(
     track: ObjectTrack, is_echo: bool, measured: float, own_approach: float, variance: float, dt: float
 ) -> ObjectTrack:
     """Return the track after ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer; ``variance`` in m2."""
+    begun = ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
     if track.status == TrackStatus.NONE:
-        if not is_echo:
-            return track
-        return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
+        return begun if is_echo else track
     predicted = _predict(track, own_approach, dt)
     if not is_echo:
         missed = track.missed + 1
@@ -88,7 +87,7 @@ def update_track(
     s = predicted.rr + variance
     y = measured - predicted.range
     if y * y > INNOVATION_GATE * s:
-        return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
+        return begun
     kr = predicted.rr / s
     kv = predicted.rv / s
     confirmations = track.confirmations + 1

@@ -18,7 +18,7 @@ from orchestrator.inputs.text.command_parser import CommandParser
 from orchestrator.inputs.text.ends import interrupt_within_limit
 from orchestrator.inputs.text.errors import SCARCE_RESOURCES, lacks_resources
 
-DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
+DESCRIPTION = "Automated parking as a pair of FMI co-simulation FMUs (2.0 and 3.0)."
 EPILOG = """examples:
   apa list                                     what can be run
   apa run guo2015-case4                        log, figure and summary in runs/guo2015-case4

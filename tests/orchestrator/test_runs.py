@@ -12,7 +12,6 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
 from orchestrator.presentation.log.read_log import read_log
-from orchestrator.presentation.report.run_index import find_runs
 from orchestrator.session.provenance import git_commit
 from orchestrator.simulation.cosim.fmu_files import sources_hash
 from orchestrator.studies.live.layout import layout_data
@@ -152,11 +151,3 @@ def test_a_page_of_runs_shows_pictures_and_escapes_titles(tmp_path: Path) -> Non
     assert 'alt="demo: not parked"' in page
     assert "not_parked</b>" not in page
     assert "<script>x" not in page
-
-
-def test_a_run_recorded_before_overrides_had_this_name_is_listed(tmp_path: Path) -> None:
-    (tmp_path / "summary.json").write_text(
-        '{"scenario": "demo", "changed": {"seed": "2"}, "outcome": "parked", "reason": "", "duration": 1}'
-    )
-    (row,) = find_runs(tmp_path)
-    assert row["overrides"] == "seed = 2"

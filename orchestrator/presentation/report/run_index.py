@@ -12,8 +12,7 @@ from orchestrator.presentation.report.results import SUMMARY
 def find_runs(folder: Path) -> list[dict[str, Any]]:
     """Return a row per run below ``folder``: time, scenario, overrides, outcome, reason, path, command; latest first.
 
-    A folder whose summary.json cannot be read is left out; one written before overrides had this name is listed.
-    Raises ``BadInput`` if there is no such folder.
+    A folder whose summary.json cannot be read is left out. Raises ``BadInput`` if there is no such folder.
     """
     if not folder.is_dir():
         raise BadInput("no such folder", file=folder)
@@ -28,7 +27,7 @@ def _row(file: Path) -> dict[str, Any] | None:
         return {
             "time": started.get("time", ""),
             "scenario": str(summary["scenario"]),
-            "overrides": changes_text(dict(summary.get("overrides", summary.get("changed", {})))),
+            "overrides": changes_text(dict(summary.get("overrides", {}))),
             "outcome": str(summary["outcome"]),
             "reason": str(summary["reason"]),
             "duration": float(summary["duration"]),

@@ -179,16 +179,11 @@ def without_inside(landmark: Landmark, slot: SlotCandidate) -> Landmark:
 
 
 def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) -> Vertex:
-    if not is_confirmed(landmark, mapping):
+    is_start = number % 2 == 0
+    if not is_confirmed(landmark, mapping) or (landmark.type == LandmarkType.POINT and not is_start):
         return Vertex()
-    polygon = 1 + number // 2
-    if number % 2 == 0:
-        point = start_point(landmark)
-        return Vertex(point.x, point.y, polygon)
-    if landmark.type == LandmarkType.POINT:
-        return Vertex()
-    point = end_point(landmark)
-    return Vertex(point.x, point.y, polygon)
+    point = start_point(landmark) if is_start else end_point(landmark)
+    return Vertex(point.x, point.y, 1 + number // 2)
 
 
 def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandidate, number: int) -> Vertex:

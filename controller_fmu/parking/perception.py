@@ -9,25 +9,22 @@ from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing
-from controller_fmu.parking.map.facing_surface import (
-    BUMPER_SENSORS,
-    FACING_ECHOES,
-    MAX_FACING_RANGE,
-    facing_segment,
-    is_pair,
-    point_between,
-)
+from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import range_by_map, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
+    EchoSurface,
     PredictedRange,
     direction_of,
     range_to_polygons,
 )
 from controller_fmu.parking.measurement.sensor import (
+    FRONT_LEFT_SIDE,
+    FRONT_MIDDLE,
     MAX_SENSORS,
+    REAR_MIDDLE,
     ReadingStatus,
     range_variance,
     reading_status,
@@ -37,7 +34,6 @@ from controller_fmu.parking.measurement.silent_sensor import is_silent
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
-    EchoSurface,
     ObjectTrack,
     TrackStatus,
     closing_speed,
@@ -54,13 +50,7 @@ from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
-from controller_fmu.parking.slots.slot_filter import (
-    SlotFilter,
-    count_absent,
-    is_slot_corner,
-    predict_slot,
-    update_slot,
-)
+from controller_fmu.parking.slots.slot_filter import SlotFilter, count_absent, is_slot_corner, predict_slot, update_slot
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 from modelkit.car import car_length
 from modelkit.vocabulary import Pose
@@ -72,8 +62,6 @@ MAX_MONITORED_RANGE = 1.5
 MAX_DISPLACEMENT = 0.06
 """Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
 centimetres."""
-SIDE_SENSOR = 8
-"""The front sensor of the left flank; that of the right one is as far ahead."""
 HALF_SENSOR_SPACING = 0.25
 """Half of the distance [m] of the two middle sensors of a bumper, at y = +-0.25 m (``modelkit.car``)."""
 MAX_REST = 0.3
@@ -106,16 +94,15 @@ def _with_measurements(perception: Perception, inputs: ParkingSystemInput, param
     """Return perception with the map after a measurement cycle."""
     readings = perception.cycle.readings
     sensors = params.car.ultrasonic
-    perception = perception._replace(
+    return perception._replace(
         local_map=update_map(perception.local_map, readings, inputs.odometry, sensors, params.mapping)
     )
-    return perception._replace(pose=inputs.odometry)
 
 
 def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SlotFilter:
     """Return what is known of the slot after a measurement cycle, as the vehicle enters it."""
     search = memory.search
-    before = memory.perception.pose
+    before = memory.perception.local_map.pose
     sensors = params.car.ultrasonic
     driven = planar_distance(inputs.odometry.x, inputs.odometry.y, before.x, before.y)
     if not search.slot_filter.is_begun or driven <= 0.0:
@@ -158,10 +145,7 @@ def _with_tracks(
     """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
     echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, search, tracks, inputs, params)
-    yields = perception.yields
-    for track in tracks:
-        if is_yielded_to(track):
-            yields = yield_cycles(params)
+    yields = yield_cycles(params) if any(is_yielded_to(track) for track in tracks) else perception.yields
     return perception._replace(
         local_map=perception.local_map._replace(landmarks=landmarks), tracks=tracks, echoes=echoes, yields=yields
     )
@@ -191,18 +175,17 @@ def _with_facing(
     is_across = search.slot.type == SlotType.PERPENDICULAR
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
-    for number in range(BUMPER_SENSORS):
-        if is_pair(number):
-            a = tracks[number]
-            b = tracks[number + 1]
-            is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
-            if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
-                first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
-                second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
-                new = facing_segment(first, a.range, second, b.range, variance)
-                at = point_between(first, a.range, second, b.range)
-                if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(search.slot_filter, at)):
-                    landmarks = put_facing(landmarks, new, params.mapping)
+    for number in (FRONT_MIDDLE, REAR_MIDDLE):
+        a = tracks[number]
+        b = tracks[number + 1]
+        is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
+        if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
+            first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+            second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
+            new = facing_segment(first, a.range, second, b.range, variance)
+            at = point_between(first, a.range, second, b.range)
+            if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(search.slot_filter, at)):
+                landmarks = put_facing(landmarks, new, params.mapping)
     return landmarks
 
 
@@ -218,7 +201,7 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     reading = perception.cycle.readings[number]
     status = reading_status(reading, sensors)
     sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
-    before = sensor_pose(sensors.mounts[number], sensors.half_angle, perception.pose)
+    before = sensor_pose(sensors.mounts[number], sensors.half_angle, perception.local_map.pose)
     approach = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
     is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE)
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
@@ -254,8 +237,8 @@ def surface_near(expected: PredictedRange, measured: float, params: MonitorParam
     nearer = expected.distance - measured
     if not is_side or nearer > params.unexplained or nearer < -MAX_DISPLACEMENT:
         return EchoSurface()
-    low = max(expected.low, -HALF_SENSOR_SPACING)
-    return EchoSurface(expected.surface.x, expected.surface.y, low, min(expected.high, HALF_SENSOR_SPACING))
+    side = expected.surface
+    return side._replace(low=max(side.low, -HALF_SENSOR_SPACING), high=min(side.high, HALF_SENSOR_SPACING))
 
 
 def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
@@ -325,7 +308,7 @@ def _with_external(
     given = inputs.external_slot
     landmarks = memory.perception.local_map.landmarks
     found = external_candidate(given, inputs.odometry, landmarks, outline, params.slot, params.mapping)
-    sensor_x = params.car.ultrasonic.mounts[SIDE_SENSOR].x
+    sensor_x = params.car.ultrasonic.mounts[FRONT_LEFT_SIDE].x
     if found.type != SlotType.NONE and not has_passed_external(found, sensor_x, inputs.odometry):
         return search
     if found.reason != Reason.NONE:

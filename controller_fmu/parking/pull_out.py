@@ -11,10 +11,16 @@ from typing import NamedTuple
 from controller_fmu.common.driver_selection import ChosenSide
 from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.facing_surface import BUMPER_SENSORS, is_pair
 from controller_fmu.parking.map.landmark import Landmark, free_index, replace_landmark, segment_between
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus, reading_status
+from controller_fmu.parking.measurement.sensor import (
+    BUMPER_SENSORS,
+    FRONT_MIDDLE,
+    MAX_SENSORS,
+    REAR_MIDDLE,
+    ReadingStatus,
+    reading_status,
+)
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH
 from modelkit.car import Car
 from modelkit.geometry import Point
@@ -50,7 +56,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
     right = -far
     for number in range(MAX_SENSORS):
         mount = sensors.mounts[number]
-        is_middle = is_pair(number) or is_pair(number - 1)
+        is_middle = number in (FRONT_MIDDLE, FRONT_MIDDLE + 1, REAR_MIDDLE, REAR_MIDDLE + 1)
         status = reading_status(readings[number], sensors)
         if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
             x = mount.x + readings[number] * math.cos(mount.yaw)

@@ -83,8 +83,6 @@ class Perception(NamedTuple):
     tracks: tuple[ObjectTrack, ...] = (ObjectTrack(),) * MAX_SENSORS
     echoes: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_SENSORS
     remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_REMEMBERED
-    pose: Pose = Pose()
-    """At the last measurement cycle."""
     yields: int = 0
     """Measurement cycles for which the vehicle still stands for a moving object."""
 

@@ -12,7 +12,11 @@ from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outl
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.predicted_range import predict_range_to_point, predict_range_to_segment
+from controller_fmu.parking.measurement.predicted_range import (
+    EchoSurface,
+    predict_range_to_point,
+    predict_range_to_segment,
+)
 from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.monitor.collision_monitor import (
     NO_LIMIT,
@@ -25,7 +29,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
 )
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
-    EchoSurface,
     ObjectTrack,
     TrackStatus,
     closing_speed,

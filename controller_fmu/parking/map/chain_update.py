@@ -172,21 +172,16 @@ def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, par
         parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
         first = _fit_part(chain, 0, at - 1, reading, begins, parts)
         second = _fit_part(chain, at, last, reading, parts, ends)
-        if (
-            split_gain(chain, at, (whole.landmark, first.landmark, second.landmark), reading.variance)
-            > SPLIT_CHI_SQUARE
-        ):
-            known = _with_edges(first, chain.begins_at_edge, True)
-            update = _put(update, known, at, params)
+        gain = split_gain(chain, at, (whole.landmark, first.landmark, second.landmark), reading.variance)
+        if gain > SPLIT_CHI_SQUARE:
+            update = _put(update, first, (chain.begins_at_edge, True), at, params)
             update = update._replace(chain=without_echoes_before(chain, at))
-            known = _with_edges(second, True, ends_at_edge)
-            return _put(update, known, update.chain.used, params)
+            return _put(update, second, (True, ends_at_edge), update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
         chain, whole.landmark, reading.sensor, reading.variance
     ):
         return update._replace(chain=update.chain._replace(fitted=update.chain.used))
-    known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
-    return _put(update, known, update.chain.used, params)
+    return _put(update, whole, (chain.begins_at_edge, ends_at_edge), update.chain.used, params)
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:
@@ -287,18 +282,6 @@ def _step(echo: ChainEcho, other: ChainEcho) -> float:
     return planar_distance(echo.x, echo.y, other.x, other.y)
 
 
-def _with_edges(fit: SegmentFit, first_known: bool, last_known: bool) -> SegmentFit:
-    """Return the fit with the edges marked that were passed, in the order of the chain, if they are known well."""
-    landmark = fit.landmark
-    most = KNOWN_SIGMA * KNOWN_SIGMA
-    return fit._replace(
-        landmark=landmark._replace(
-            start_known=first_known and landmark.start_variance < most,
-            end_known=last_known and landmark.end_variance < most,
-        )
-    )
-
-
 def initial_line(chain: EchoChain, first: int, last: int, sensor: SensorPose) -> Landmark:
     """Return a line along the path of a part of a chain, through the point on the axis of its nearest echo."""
     a = chain.echoes[first]
@@ -374,15 +357,24 @@ def distance_to_segment(segment: Landmark, x: float, y: float) -> float:
     return math.sqrt((u - t) * (u - t) + v * v)
 
 
-def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParams) -> ChainUpdate:
+def _put(
+    update: ChainUpdate, fit: SegmentFit, are_edges: tuple[bool, bool], echoes: int, params: MappingParams
+) -> ChainUpdate:
     """Return landmarks and chain with a chain's landmark set: the chain's renewed, or a new one.
 
+    Its ends are known where edges were passed, ``are_edges`` in the order of the chain, if their place is known well.
     A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
     unsure direction is none: the chain went round a corner. A direction is that of the chain's middle; from there to
     its end the odometry drifts over half of its path.
     """
     path = _step(update.chain.echoes[max(echoes - 1, 0)], update.chain.echoes[0])
-    new = fit.landmark._replace(confirmations=echoes, hh=fit.landmark.hh + 0.5 * path * params.heading_variance)
+    segment = fit.landmark
+    new = segment._replace(
+        start_known=are_edges[0] and segment.start_variance < KNOWN_SIGMA * KNOWN_SIGMA,
+        end_known=are_edges[1] and segment.end_variance < KNOWN_SIGMA * KNOWN_SIGMA,
+        confirmations=echoes,
+        hh=segment.hh + 0.5 * path * params.heading_variance,
+    )
     update = update._replace(chain=update.chain._replace(fitted=update.chain.used))
     if new.hh > MAX_TURN_SIGMA * MAX_TURN_SIGMA and length_of(new) > MIN_SURE_LENGTH:
         return update

@@ -11,8 +11,6 @@ from controller_fmu.parking.map.landmark import Landmark, segment_between
 from controller_fmu.parking.measurement.sensor import SensorPose
 from modelkit.geometry import Point
 
-BUMPER_SENSORS = 8
-"""Numbers 0 to 3 in front, 4 to 7 behind."""
 FACING_ECHOES = 8
 """Echoes of a track after which its object counts as at rest: its closing rate is then known to 0.2 m/s."""
 MAX_TILT_SLOPE = 0.34
@@ -21,14 +19,6 @@ MAX_FACING_RANGE = 1.5
 """Farther echoes [m] are not used yet."""
 LATERAL_SIGMA = 0.15
 """Standard deviation [m] of where such a segment ends."""
-
-
-def is_pair(number: int) -> bool:
-    """Return whether sensor ``number`` (0 to 7) and the next are the two in the middle of one bumper.
-
-    An outer one looks aside: into a slot it measures a neighbour's flank.
-    """
-    return number == 1 or number == 5
 
 
 def point_between(a: SensorPose, a_range: float, b: SensorPose, b_range: float) -> Point:

@@ -16,12 +16,7 @@ from controller_fmu.parking.map.chain_update import (
 from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, replace_landmark
-from controller_fmu.parking.map.oblique_side import (
-    CONE_BOUNDARIES,
-    ConeBoundaries,
-    index_of_side,
-    update_oblique_sides,
-)
+from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundaries, index_of_side, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.map.visibility import (

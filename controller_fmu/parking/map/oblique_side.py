@@ -101,13 +101,13 @@ def update_oblique_sides(boundaries: ConeBoundaries, reading: SideReading) -> Ob
         run = runs[boundary]
         turn = 1.0 if boundary == 0 else -1.0
         point = boundary_point(reading.sensor, reading.range, turn)
-        over = is_over(run, reading.status, point, reading.range, reading.variance)
+        over = is_over(run, reading, point)
         if over:
             ends = side_ending(run.range, reading.range)
             side = side_of(run, reading.sensor, turn, ends, reading.variance)
             side = Landmark() if _is_turned(run, reading.sensor) else side
             update = update._replace(passed=update.passed[:boundary] + (side,) + update.passed[boundary + 1 :])
-        run = next_run(run, reading.status, reading.sensor, point, reading.range, over)
+        run = next_run(run, reading, point, over)
         now = side_of(run, reading.sensor, turn, int(SideEnding.HIDDEN), reading.variance)
         update = update._replace(
             boundaries=ConeBoundaries(runs[:boundary] + (run,) + runs[boundary + 1 :]),
@@ -133,36 +133,34 @@ def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
     return Point(sensor.x + measured * ux, sensor.y + measured * uy)
 
 
-def is_over(run: BoundaryRun, status: int, point: Point, measured: float, variance: float) -> bool:
-    """Return whether a run has ended with a reading whose boundary point is ``point``; ``variance`` [m2] of ranges."""
+def is_over(run: BoundaryRun, reading: SideReading, point: Point) -> bool:
+    """Return whether a run has ended with a reading whose boundary point is ``point``."""
     if run.sums.n == 0:
         return False
-    if status == ReadingStatus.NO_ECHO:
+    if reading.status == ReadingStatus.NO_ECHO:
         return run.lost + 1 >= MAX_LOST
-    if status != ReadingStatus.ECHO or abs(measured - run.range) > EDGE_JUMP:
+    if reading.status != ReadingStatus.ECHO or abs(reading.range - run.range) > EDGE_JUMP:
         return True
     if planar_distance(point.x, point.y, run.last.x, run.last.y) > MAX_SPACING:
         return True
     if run.sums.n < 3:
         return False
-    line = line_of(run, variance)
+    line = line_of(run, reading.variance)
     off = offset_of(line, point.x, point.y)
     known = offset_variance(line, along_of(line, point.x, point.y))
-    return off * off > LINE_SIGMA * LINE_SIGMA * (variance + known)
+    return off * off > LINE_SIGMA * LINE_SIGMA * (reading.variance + known)
 
 
-def next_run(
-    run: BoundaryRun, status: int, sensor: SensorPose, point: Point, measured: float, over: bool
-) -> BoundaryRun:
-    """Return a run after a reading at ``measured`` [m], or the one that begins after it is ``over``."""
-    if status != ReadingStatus.ECHO:
+def next_run(run: BoundaryRun, reading: SideReading, point: Point, over: bool) -> BoundaryRun:
+    """Return a run after a reading, or the one that begins after it is ``over``."""
+    if reading.status != ReadingStatus.ECHO:
         return BoundaryRun(range=NO_HIT) if over or run.sums.n == 0 else run._replace(lost=run.lost + 1)
     if over or run.sums.n == 0:
-        begun = BoundaryRun(sensor=sensor, begins=side_ending(measured, run.range))
-        return with_point(begun, point, measured)
+        begun = BoundaryRun(sensor=reading.sensor, begins=side_ending(reading.range, run.range))
+        return with_point(begun, point, reading.range)
     if planar_distance(point.x, point.y, run.last.x, run.last.y) < MIN_SPACING:
         return run._replace(lost=0)
-    return with_point(run, point, measured)
+    return with_point(run, point, reading.range)
 
 
 def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:

@@ -9,15 +9,13 @@ the vehicle moves by -u e_d + (z x r) e_h, with u the vehicle's direction, and t
 
 import math
 
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import Landmark
 from controller_fmu.parking.map.params import MappingParams
 from modelkit.vocabulary import Pose
 
 
 def predict_landmark(landmark: Landmark, vehicle: Pose, distance: float, params: MappingParams) -> Landmark:
     """Return the landmark after the vehicle, now at ``vehicle``, drove ``distance`` [m] >= 0."""
-    if landmark.type == LandmarkType.NONE:
-        return landmark
     along = params.distance_variance * distance
     turn = params.heading_variance * distance
     ux = math.cos(vehicle.heading)

@@ -91,11 +91,8 @@ def is_contradicted(
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION
     sigma = math.sqrt(offset_variance(landmark, along) + variance + roughness)
-    ux = predicted.x - sensor.x
-    uy = predicted.y - sensor.y
-    ahead = ux * sensor.axis_x + uy * sensor.axis_y
-    across = abs(uy * sensor.axis_x - ux * sensor.axis_y)
-    surely_in_view = across * sensor.cone_cos <= WELL_IN_VIEW * ahead * sensor.cone_sin
+    narrow = sensor._replace(cone_sin=WELL_IN_VIEW * sensor.cone_sin)
+    surely_in_view = in_field_of_view(narrow, predicted.x, predicted.y)
     beyond_blind_zone = predicted.distance > min_range + 3.0 * sigma
     return surely_in_view and beyond_blind_zone and predicted.distance < free_range - 3.0 * sigma
 

@@ -25,6 +25,15 @@ class EchoOrigin(IntEnum):
     CONE_EDGE = 4
 
 
+class EchoSurface(NamedTuple):
+    """A straight side through an echo's point, along a unit vector from ``low`` <= 0 to ``high`` >= 0 [m]; 0: none."""
+
+    along_x: float = 0.0
+    along_y: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+
+
 class PredictedRange(NamedTuple):
     """The nearest point of a landmark in a field of view."""
 
@@ -33,11 +42,8 @@ class PredictedRange(NamedTuple):
     origin: int = EchoOrigin.OUT_OF_VIEW
     x: float = 0.0
     y: float = 0.0
-    surface: Point = Point(0.0, 0.0)
-    """Unit vector along the segment; 0 of a point."""
-    low: float = 0.0
-    high: float = 0.0
-    """How far [m] the segment goes on from (x, y) along ``surface``: from ``low`` <= 0 to ``high`` >= 0."""
+    surface: EchoSurface = EchoSurface()
+    """The segment; of a point none."""
 
 
 def direction_of(predicted: PredictedRange, sensor: SensorPose) -> Point:
@@ -76,9 +82,10 @@ def predict_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> Predicte
     x = a.x + foot * dx
     y = a.y + foot * dy
     length = math.sqrt(square)
-    surface = Point(dx / length, dy / length) if length > 0.0 else Point(0.0, 0.0)
-    distance = planar_distance(x, y, sensor.x, sensor.y)
-    return PredictedRange(distance, int(origin), x, y, surface, -foot * length, (1.0 - foot) * length)
+    surface = EchoSurface()
+    if length > 0.0:
+        surface = EchoSurface(dx / length, dy / length, -foot * length, (1.0 - foot) * length)
+    return PredictedRange(planar_distance(x, y, sensor.x, sensor.y), int(origin), x, y, surface)
 
 
 def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> SegmentPart:

@@ -12,6 +12,11 @@ from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.vocabulary import Pose
 
 MAX_SENSORS = 12
+BUMPER_SENSORS = 8
+"""Numbers 0 to 3 in front, 4 to 7 behind; then two on each flank."""
+FRONT_MIDDLE = 1
+REAR_MIDDLE = 5
+"""Of the two in the middle of a bumper the first. The outer ones look aside: into a slot they measure its sides."""
 FRONT_LEFT_SIDE = 8
 FRONT_RIGHT_SIDE = 10
 NO_ECHO_FRACTION = 0.99

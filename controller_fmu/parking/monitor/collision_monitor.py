@@ -18,8 +18,8 @@ from controller_fmu.parking.geometry.outline_distance import edge_distance_squar
 from controller_fmu.parking.map.landmark import Landmark, end_point, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.predicted_range import EchoSurface
 from controller_fmu.parking.monitor.params import MonitorParams
-from controller_fmu.parking.objects.track import EchoSurface
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 

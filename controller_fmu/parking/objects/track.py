@@ -9,6 +9,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
+from controller_fmu.parking.measurement.predicted_range import EchoSurface
 from controller_fmu.parking.measurement.sensor import SensorPose
 
 ACCELERATION_DENSITY = 4.0
@@ -36,15 +37,6 @@ class TrackStatus(IntEnum):
     TENTATIVE = 1
     CONFIRMED = 2
     COASTING = 3
-
-
-class EchoSurface(NamedTuple):
-    """A straight side through an echo's point, along a unit vector from ``low`` <= 0 to ``high`` >= 0 [m]."""
-
-    along_x: float = 0.0
-    along_y: float = 0.0
-    low: float = 0.0
-    high: float = 0.0
 
 
 class ObjectTrack(NamedTuple):

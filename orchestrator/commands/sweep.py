@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
 from orchestrator.commands import STUDIES
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.inputs.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
 from orchestrator.inputs.text.failures import verdict_stands
 from orchestrator.inputs.text.locked_folder import lock_folder
@@ -242,14 +242,11 @@ def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
 def _outcome_table(path: Path) -> "RichTable":
     """Return the outcomes of a study as a table: how many runs end how, with Wilson's 95 % interval."""
     from rich.markup import escape
-    from rich.table import Table as RichTable
 
     from orchestrator.studies.sweep.page.statistics import outcome_counts
     from orchestrator.studies.sweep.table import Table
 
-    shown = RichTable(box=None, pad_edge=False)
-    for name in ("outcome", "reason", "runs", "share", "95 % interval"):
-        shown.add_column(name, justify="left" if name in ("outcome", "reason") else "right")
+    shown = result_table(console(), ("outcome", "reason", "runs", "share", "95 % interval"), ("outcome", "reason"))
     for item in outcome_counts(Table(path), most=MAX_OUTCOMES):
         interval = f"{100.0 * item.low:.2f} to {100.0 * item.high:.2f} %"
         shown.add_row(item.outcome, escape(item.reason), str(item.runs), f"{100.0 * item.share:.2f} %", interval)

@@ -62,7 +62,7 @@ def test_any_lot_gives_seeds_that_the_sensors_take() -> None:
 @needs_compiler
 def test_no_run_touches_anything(results: list[GridRun]) -> None:
     assert min(item.nearest for item in results) > 0.02
-    assert totals(results)["touched something"] == 0
+    assert totals(results)["with contact"] == 0
 
 
 @needs_compiler
@@ -120,7 +120,7 @@ def test_the_command_prints_the_tables_and_rows_come_back(tmp_path: Path, capsys
     asked = ["sweep", "apa-grid", "--set", "lot=1", "--stride", "400", "--out", str(tmp_path), "--no-page"]
     assert main(asked) == 0
     printed = capsys.readouterr().out
-    assert "touched something" in printed
+    assert "with contact" in printed
     assert "slot found" in printed
     assert main(["replay", str(tmp_path / "apa-grid.parquet"), "--row", "1", "--no-page", "--fmus", "native"]) == 0
     assert "same bits as in the table" in capsys.readouterr().out

@@ -6,7 +6,7 @@ import shlex
 from pathlib import Path
 
 from fmus.files import write_whole
-from orchestrator.inputs.text.console import Meter, console, say
+from orchestrator.inputs.text.console import Meter, console, result_table, say
 from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
 from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.simulation.cosim.algorithm import Interrupt
@@ -85,12 +85,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _print(rows: list[SceneRow], out: Path) -> None:
     from rich.markup import escape
-    from rich.table import Table
 
     head, *lines = table_lines(rows)
-    table = Table(box=None, pad_edge=False)
-    for place, name in enumerate(head):
-        table.add_column(name, justify="left" if place == 0 else "right")
+    table = result_table(console(), head, head[:1])
     for line in lines:
         table.add_row(*map(escape, line))
     console().print(table)

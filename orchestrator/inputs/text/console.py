@@ -42,7 +42,7 @@ def console(stream: TextIO | None = None) -> "Console":
     return SafeConsole(file=whole, highlight=False, width=None if whole.isatty() else PIPED_WIDTH)
 
 
-def result_table(screen: "Console", titles: Sequence[str], texts: Sequence[str]) -> "Table":
+def result_table(screen: "Console", titles: Sequence[str], texts: Sequence[str] = ()) -> "Table":
     """Return an empty table with a frame on a terminal only; columns to the right, but ``texts`` to the left."""
     from rich.table import Table
 

@@ -8,7 +8,7 @@ from rich.table import Table as Printed
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.inputs.scenario.obstacle_map import map_of
 from orchestrator.inputs.scenario.scenario import Scenario
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.parking.detected_slot_cases import DetectedSlotCase, cases
 from orchestrator.studies.parking.detected_slot_scenarios import out_of, scenario_of
 from orchestrator.studies.parking.system_signals import plan_measures
@@ -88,15 +88,14 @@ def report(table: Table, folder: Path) -> int:
     touched = sum(row["min_clearance"] <= 0.0 for row in rows)
     parked = sum(row["outcome"] == "parked" for row in rows)
     if len(every) > len(rows):
-        console().print(f"{len(planned)} with a way for a planner that knows everything")
-    console().print(f"{len(rows)} runs, {parked} parked, {touched} touched; {_gbt(rows)} of those that stand in a slot")
+        console().print(f"{len(planned)} slots with a path on the exact map")
+    counts = f"{len(rows)} runs, {parked} parked, {touched} with contact"
+    console().print(f"{counts}; {_gbt(rows)} of those that stand in a slot")
     return 1 if touched else 0
 
 
 def _by(rows: list[dict[str, Any]], factor: str) -> Printed:
-    table = Printed(box=None, pad_edge=False)
-    for name in (factor, "runs", "with a way", "parked", "GB/T 41630", "touched"):
-        table.add_column(name, justify="right")
+    table = result_table(console(), (factor, "runs", "with a path", "parked", "GB/T 41630", "contact"))
     for value in sorted({row[factor] for row in rows}):
         own = [row for row in rows if row[factor] == value]
         ways = [row for row in own if row["way"]]

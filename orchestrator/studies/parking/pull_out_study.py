@@ -13,7 +13,7 @@ from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.fault import Fault
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.parking.cases import CARS, KINDS
 from orchestrator.studies.parking.pull_out_cases import (
     PASSES,
@@ -121,7 +121,7 @@ def report(table: Table, folder: Path) -> int:
     for run in found:
         if not run.is_out and run.way:
             where = f"{KINDS[run.case.kind]} +{run.case.extra:.2f} m, {run.case.behind} {run.case.beside:.2f} m"
-            text = f"run {run.case.number}: {where}, {run.case.car}: {run.reason}; there is a way"
+            text = f"run {run.case.number}: {where}, {run.case.car}: {run.reason}; a path exists"
             to.print(text, highlight=False, soft_wrap=True)
     for reason, count in Counter(run.reason for run in found if not run.is_out).most_common():
         to.print(f"{count} not out: {reason}", highlight=False)
@@ -129,17 +129,16 @@ def report(table: Table, folder: Path) -> int:
     early = sum(run.is_out and run.ahead < FREE_AHEAD for run in found)
     out, feasible = sum(run.is_out for run in found), sum(run.way for run in found)
     share = f"{100.0 * out / max(feasible, 1):.1f} %"
-    text = f"{len(found)} runs, a way out of {feasible}, {out} out ({share}), {touched} touched"
+    text = f"{len(found)} runs, {feasible} with a path, {out} out ({share}), {touched} with contact"
     text += f" ({driven} while they drove)" if touched else ""
-    to.print(f"{text}, {early} handed over too early", highlight=False)
+    to.print(f"{text}, {early} handed to the driver too early", highlight=False)
     return 1 if driven or early else 0
 
 
 def _by_room(found: list[OutRun]) -> Printed:
     """Return how many came out by kind and room."""
-    table = Printed(box=None, pad_edge=False)
-    for name in ("room", "runs", "a way", "out", "manoeuvres", "nearest", "longest"):
-        table.add_column(name, justify="left" if name == "room" else "right")
+    titles = ("room", "runs", "with a path", "out", "manoeuvres", "clearance", "longest")
+    table = result_table(console(), titles, ("room",))
     for kind, low in sorted({(run.case.kind, 0.5 * int(2.0 * run.case.extra)) for run in found}):
         own = [run for run in found if run.case.kind == kind and low <= run.case.extra < low + 0.5]
         out = sorted((run for run in own if run.is_out), key=lambda run: run.manoeuvres)

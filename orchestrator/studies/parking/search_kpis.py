@@ -13,12 +13,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from rich.table import Table as Printed
 
 from modelkit.car import car_length
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.inputs.scenario.slot_sizes import ParkingType, shortest_slot
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import BODIES, CARS, ISO, KINDS, SEED_STRIDE, GridCase, scenario_of
 from orchestrator.studies.parking.parkings import (
@@ -207,9 +206,7 @@ def rows_of(columns: Mapping[str, Array]) -> list[list[str]]:
 def report(table: Table, folder: Path) -> int:
     """Print the table. Returns 1 if a run touched something."""
     columns = {name: np.asarray(table.column(name)) for name in table.names()}
-    printed = Printed(box=None, pad_edge=False)
-    for name in ("", *HEADS):
-        printed.add_column(name, justify="right" if name else "left")
+    printed = result_table(console(), ("", *HEADS), ("",))
     for line in rows_of(columns):
         printed.add_row(*line)
     console().print(printed)

@@ -20,7 +20,7 @@ from orchestrator.inputs.scenario.car import car_parameters
 from orchestrator.inputs.scenario.obstacle_map import map_of
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.parking.cases import CARS
 from orchestrator.studies.parking.imperfect import imperfect
 from orchestrator.studies.parking.system_signals import APA_SYSTEM, plan_measures
@@ -155,9 +155,8 @@ def report(table: Table, folder: Path) -> int:
 
 
 def _by_angle(rows: list[dict[str, Any]]) -> Printed:
-    table = Printed(box=None, pad_edge=False)
-    for name in ("angle", *(f"{kind}, {street:g} m" for kind, street in _columns()), "touched", "manoeuvres", "time"):
-        table.add_column(name, justify="right")
+    kinds = (f"{kind}, {street:g} m" for kind, street in _columns())
+    table = result_table(console(), ("angle", *kinds, "contact", "manoeuvres", "time"))
     for angle in ANGLES:
         group = [row for row in rows if row["angle"] == angle]
         cells = []

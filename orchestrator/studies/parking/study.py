@@ -6,7 +6,7 @@ from pathlib import Path
 from rich.table import Table as Printed
 
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.parking.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
 from orchestrator.studies.parking.parkings import (
     FOUND,
@@ -64,7 +64,7 @@ def totals(found: list[GridRun]) -> dict[str, int]:
     """Return how many runs did what."""
     return {
         "runs": len(found),
-        "touched something": sum(item.nearest <= 0.0 for item in found),
+        "with contact": sum(item.nearest <= 0.0 for item in found),
         "parked within GB/T 41630": sum(item.is_gbt for item in found),
         "parked within the project limits": sum(item.is_within_limits for item in found),
         "gave up with a reason": sum(item.is_given_up for item in found),
@@ -104,10 +104,7 @@ def _totals(found: list[GridRun]) -> Printed:
         "slot found": [item for item in found if item.kind != 0],
         "no slot found": [item for item in found if item.kind == 0],
     }
-    table = Printed(box=None, pad_edge=False)
-    table.add_column("")
-    for name in groups:
-        table.add_column(name, justify="right")
+    table = result_table(console(), ("", *groups), ("",))
     columns = [(totals(group), max(len(group), 1)) for group in groups.values()]
     for name in columns[0][0]:
         texts = (
@@ -120,10 +117,8 @@ def _totals(found: list[GridRun]) -> Printed:
 
 def _by_size(found: list[GridRun]) -> Printed:
     """Return how the limits are met in slots of each size: what a slot allows depends on it."""
-    table = Printed(box=None, pad_edge=False)
-    columns = ("slot", "runs", "GB/T", "project", "project, but manoeuvres as GB/T", "manoeuvres", "nearest")
-    for name in columns:
-        table.add_column(name, justify="left" if name == "slot" else "right")
+    titles = ("slot", "runs", "GB/T", "project", "project, but manoeuvres as GB/T", "manoeuvres", "clearance")
+    table = result_table(console(), titles, ("slot",))
     for kind, extra in [(kind, extra) for kind, extras in EXTRA.items() for extra in extras]:
         group = [item for item in found if (item.case.kind, item.case.extra) == (kind, extra)]
         if not group:

@@ -48,13 +48,13 @@ MEASURES = {
 MOVING, STANDING, DRIVER = "contact, moving", "contact, standing", "contact, driver drives"
 FALSE, PARKED, FAILED, ENDLESS = "false parked", "parked", "gave up", "endless"
 ENDS = {
-    MOVING: f"touched something while the system drives, above {MOVING_SPEED} m/s",
-    STANDING: f"touched something, or was touched, at no more than {MOVING_SPEED} m/s",
+    MOVING: f"contact while the system drives, above {MOVING_SPEED} m/s",
+    STANDING: f"contact at no more than {MOVING_SPEED} m/s",
     FALSE: "claims to be parked outside the slot, beyond GB/T 41630, or where there is no slot",
     ENDLESS: "neither parked nor given up at the stop time",
-    PARKED: "parked within GB/T 41630, nothing touched",
-    FAILED: "gave up, nothing touched",
-    DRIVER: "touched something while the driver drives",
+    PARKED: "parked within GB/T 41630, no contact",
+    FAILED: "gave up, no contact",
+    DRIVER: "contact while the driver drives",
 }
 """How a run ends, the worst first."""
 COLUMNS = {

@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from rich.table import Table as Printed
+from numpy.typing import NDArray
 
 from orchestrator.evaluation.verdict.confidence import percent_interval
 from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console
 from orchestrator.simulation.cosim.fmu_instance import Array
-from orchestrator.studies.parking.cases import KINDS
 from orchestrator.studies.parking.parking_world.bays import in_bays
 from orchestrator.studies.parking.parking_world.factors import FACTORS
 from orchestrator.studies.parking.parking_world.outcome import (
@@ -29,7 +28,6 @@ from orchestrator.studies.parking.parking_world.scene import parameters
 from orchestrator.studies.parking.parkings import GBT
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world import study as world
-from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
 from orchestrator.studies.parking.world.feasibility import DETECTED_HEIGHT
 from orchestrator.studies.parking.world.scene import WITH_KERB
 from orchestrator.studies.sweep.fields import Field, find_field
@@ -84,15 +82,7 @@ def _stack(values: Mapping[str, Array], seeds: Seeds) -> Array:
 def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if the system touched something, claims falsely, or has no end."""
     ends, to = table.column("end"), console()
-    groups = groups_of(table)
-    printed = Printed(box=None, pad_edge=False)
-    for name in ("end", *groups):
-        printed.add_column(name, justify="left" if name == "end" else "right")
-    printed.add_row("runs", *(str(int(chosen.sum())) for chosen in groups.values()))
-    for end in ENDS:
-        counts = [(int((ends[chosen] == end).sum()), max(int(chosen.sum()), 1)) for chosen in groups.values()]
-        printed.add_row(end, *(f"{count} ({100.0 * count / of:.2f} %)" for count, of in counts))
-    to.print(printed)
+    to.print(world.ends_table(ends, groups_of(table), ENDS))
     for line in shares_of(table):
         to.print(line, highlight=False)
     worst = np.flatnonzero(np.isin(ends, (MOVING, STANDING, FALSE, ENDLESS)))
@@ -100,13 +90,11 @@ def report(table: Table, folder: Path) -> int:
     return 1 if len(worst) else 0
 
 
-def groups_of(table: Table) -> dict[str, Array]:
-    """Return the groups of runs: a name, and for each run whether it is one of them."""
-    kinds = table.column("kind")
-    quiet = (table.column("person") < NOBODY) & (table.column("mover") < NOBODY) & (table.column("lost") < NO_SENSOR)
+def groups_of(table: Table) -> dict[str, NDArray[np.bool_]]:
+    """Return the groups of ``apa-world``, and those of its last one that have further cars in the row."""
+    found = world.groups(table)
     rows = (table.column("cars_a") + table.column("cars_b")) > 0
-    sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}
-    return {"all": np.full(len(kinds), True), **sides, "static, healthy": quiet, "static, healthy, rows": quiet & rows}
+    return {**found, f"{world.QUIET}, rows": found[world.QUIET] & rows}
 
 
 def shares_of(table: Table) -> list[str]:

@@ -53,12 +53,12 @@ MEASURES = {
 CONTACT, DRIVER, WALKED_INTO, LOW_KERB = "contact", "contact, driver drives", "walked into", "wheel at a low kerb"
 PARKED, FALSE, FAILED, ENDLESS = "parked", "false parked", "gave up", "endless"
 ENDS = {
-    CONTACT: "touched something while the system drives, or while it holds the car",
+    CONTACT: "contact while the system drives or holds the vehicle",
     FALSE: "claims to be parked outside the slot or beyond GB/T 41630",
     ENDLESS: "neither parked nor given up at the stop time",
-    PARKED: "parked within GB/T 41630, nothing touched",
-    FAILED: "gave up, nothing touched",
-    DRIVER: "touched something while the driver drives",
+    PARKED: "parked within GB/T 41630, no contact",
+    FAILED: "gave up, no contact",
+    DRIVER: "contact while the driver drives",
     WALKED_INTO: "a pedestrian, or a neighbour, moved into the car: it would have touched it standing, too",
     LOW_KERB: "a tyre against a kerb that is too low to be detected; nothing of the body touches it",
 }

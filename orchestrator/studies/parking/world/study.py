@@ -1,7 +1,7 @@
 """The parking system with slots, neighbours, sensors, actuators and road disturbed at once."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from orchestrator.evaluation.verdict.confidence import percent_interval
 from orchestrator.inputs.scenario.fault import Fault
 from orchestrator.inputs.scenario.requirements import Requirement, library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, result_table
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import KINDS, gbt_limits
@@ -107,13 +107,14 @@ def _stack(values: F, seeds: Seeds, row_cars: int = 0) -> Array:
 def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
     ends, to = table.column("end"), console()
-    to.print(_ends(ends, groups(table)))
+    to.print(ends_table(ends, groups(table)))
     for line in _success_lines(table):
         to.print(line, highlight=False)
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
         to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
-    to.print(f"of the contacts, driven into while it stood: {int(table.column('driven_into').sum())}", highlight=False)
+    others = int(table.column("driven_into").sum())
+    to.print(f"of the contacts, another drove into the standing vehicle: {others}", highlight=False)
     worst = np.flatnonzero(np.isin(ends, (CONTACT, FALSE, ENDLESS)))
     to.print(f"rows: {', '.join(map(str, worst[:MOST_ROWS].tolist())) or 'none'}", highlight=False)
     return 1 if len(worst) else 0
@@ -123,15 +124,15 @@ def success_counts(table: Table) -> dict[str, tuple[int, int]]:
     """Return how many are parked, of how many.
 
     Of valid runs; of those of them that nobody walked into, which ends a run; of those whose task is possible too;
-    of these where nothing moves or fails.
+    of these with static obstacles and healthy sensors.
     """
     ends, valid, asked = table.column("end"), table.column("valid") == 1.0, table.column("asked") == 1.0
     quiet = groups(table)[QUIET]
     chosen = {
         "valid": valid,
-        "valid that nobody walked into": valid & (ends != WALKED_INTO),
-        "valid and asked": valid & asked,
-        f"these where {QUIET}": valid & asked & quiet,
+        "valid, not walked into": valid & (ends != WALKED_INTO),
+        "valid and feasible": valid & asked,
+        f"these, {QUIET}": valid & asked & quiet,
     }
     return {name: (int((ends[of] == PARKED).sum()), int(of.sum())) for name, of in chosen.items()}
 
@@ -145,7 +146,7 @@ def _success_lines(table: Table) -> list[str]:
 
 
 MOST_ROWS = 20
-QUIET = "nothing moves or fails"
+QUIET = "static, healthy"
 
 
 def groups(table: Table) -> dict[str, NDArray[np.bool_]]:
@@ -156,12 +157,11 @@ def groups(table: Table) -> dict[str, NDArray[np.bool_]]:
     return {"all": np.full(len(kinds), True), **sides, QUIET: quiet}
 
 
-def _ends(ends: Array, groups: Mapping[str, NDArray[np.bool_]]) -> Printed:
-    table = Printed(box=None, pad_edge=False)
-    for name in ("end", *groups):
-        table.add_column(name, justify="left" if name == "end" else "right")
+def ends_table(ends: Array, groups: Mapping[str, NDArray[np.bool_]], names: Iterable[str] = ENDS) -> Printed:
+    """Return how many runs of each group came to each end."""
+    table = result_table(console(), ("end", *groups), ("end",))
     table.add_row("runs", *(str(int(chosen.sum())) for chosen in groups.values()))
-    for end in ENDS:
+    for end in names:
         counts = [(int((ends[chosen] == end).sum()), max(int(chosen.sum()), 1)) for chosen in groups.values()]
         table.add_row(end, *(f"{count} ({100.0 * count / of:.2f} %)" for count, of in counts))
     return table

@@ -12,7 +12,7 @@ from fmus.locks import cache_file
 from fmus.native.compilers import FLAGS
 from fmus.native.library_cache import C_FILES
 from fmus.native.source_fingerprint import CACHED_TRANSLATIONS, ROOT, hash_of, own_packages, words_of
-from fmus.native.tables import longest_name, runs_file, variables_file
+from fmus.native.tables import longest_name, runs_file, signal_count, variables_file
 from modelkit.model import Model
 
 CORE = ("core.h", "core.c", "state.c")
@@ -30,6 +30,7 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 #define FMU_VARIABLES "{name}_variables.h"
 #define FMU_RUNS "{name}_runs.h"
 #define FMU_LONGEST_NAME {longest}
+#define FMU_LISTED {listed}
 {store}#include "fmi{fmi}.c"
 """
 STORE = """#define FMU_STORE(model) &(model)->store,
@@ -88,6 +89,7 @@ def fmu_sources(model: Model, token: str, fmi: int = 2) -> dict[str, str]:
         prefix=PREFIX[fmi].format(name=model.name),
         token=token,
         longest=longest_name(model),
+        listed=signal_count(model),
         store="" if model.store is None else STORE,
     )
     return files

@@ -12,6 +12,7 @@ from fmus.contents.arrays import FmiArray, fmi_arrays
 from fmus.contents.variables import FmiVariable, fmi_variables, limits
 from modelkit.model import Model
 from modelkit.store import columns_of
+from modelkit.variables import variables
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 ROLES = {"input": "INPUT", "output": "CALCULATED", "local": "CALCULATED", "independent": "CALCULATED"}
@@ -65,6 +66,11 @@ def number(value: float) -> str:
 def longest_name(model: Model) -> int:
     """Return how many characters the longest name has, at most."""
     return max(len(item.name) for item in fmi_variables(model))
+
+
+def signal_count(model: Model) -> int:
+    """Return how many values a call may be about that reads or writes signals: inputs, outputs and the time."""
+    return len(variables(model.inputs)) + len(variables(model.outputs)) + 1
 
 
 def runs_file(model: Model) -> str:

@@ -8,6 +8,7 @@
  *     FMU_VARIABLES     the file with a line VARIABLE(...) for each value reference, in their order
  *     FMU_RUNS          the file with a line RUN(...) for each stretch of the model's memory without padding
  *     FMU_LONGEST_NAME  characters
+ *     FMU_LISTED        how many signals the model has
  *     FMU_STORE(model)  where the model's step finds its work arrays, with a comma; left out if it has none
  *
  * All is static and begins with fmu, Fmu or FMU: several FMUs can be linked into one image.
@@ -59,8 +60,8 @@ typedef struct {
 typedef enum { FMU_REAL, FMU_INTEGER, FMU_ENUMERATION, FMU_BOOLEAN, FMU_KINDS } FmuKind;
 
 /* What a call was found to be about: its value references, all of one kind, and where their values are kept. A host
- * makes the same calls at each step; then it is enough to see that they are the same. */
-#define FMU_LISTED 96 /* values; of longer calls nothing is noted */
+ * makes the same calls at each step; then it is enough to see that they are the same. Of calls about more values than
+ * the model has signals nothing is noted. */
 typedef struct {
     size_t count; /* of references; 0: none yet */
     size_t size;  /* of values */

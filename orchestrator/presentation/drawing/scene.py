@@ -97,25 +97,36 @@ class Frames:
         self._numbers = [template.index(DOUBLE.pack(mark)) for mark in self._marks]
         varint = b"\x80\x80\x80\x80\x04"
         times = [match.start() for match in re.finditer(re.escape(varint), template)]
-        self._seconds, self._nanos = times[::2], times[1::2]
+        self._times = times[::2], times[1::2]
+        self._make_room(1)
+
+    def _make_room(self, count: int) -> None:
+        """Lay out the messages, and where seconds, nanoseconds and numbers are in them."""
+        self._rows = np.repeat(self._template, count, axis=0)
+        stride = self._rows.shape[1:]
+        self._varints = [[self._rows[:, place : place + 5] for place in places] for places in self._times]
+        self._values = [np.ndarray(count, np.float64, self._rows.data, place, stride) for place in self._numbers]
 
     def rows(self, t_ns: NDArray[np.int64], drawn: Array) -> NDArray[np.uint8]:
-        """Return the messages at times [ns], one a row.
+        """Return the messages at times [ns], one a row. The next call writes over them.
 
         ``drawn`` (n, 7): x, y and heading of the car, then by its odometry, and the angle of the front wheels.
         """
-        rows = np.repeat(self._template, len(t_ns), axis=0)
-        for places, values in ((self._seconds, t_ns // 1_000_000_000), (self._nanos, t_ns % 1_000_000_000)):
-            varint = (values[:, None] >> self.SHIFTS & 0x7F | self.CONTINUES).astype(np.uint8)
+        count = len(t_ns)
+        if count > len(self._rows):
+            self._make_room(count)
+        for places, values in zip(self._varints, np.divmod(t_ns, 1_000_000_000), strict=True):
+            varint = values[:, None] >> self.SHIFTS & 0x7F | self.CONTINUES
             for place in places:
-                rows[:, place : place + 5] = varint
-        sin, cos = np.sin(0.5 * drawn[:, [2, 5, 6]]), np.cos(0.5 * drawn[:, [2, 5, 6]])
-        car = (drawn[:, 0], drawn[:, 1], sin[:, 0], cos[:, 0])
-        odometry = (drawn[:, 3], drawn[:, 4], sin[:, 1], cos[:, 1])
-        wheels = (sin[:, 2], cos[:, 2]) * len(FRONT_WHEELS)
-        for place, values in zip(self._numbers, (*car, *odometry, *wheels), strict=True):
-            rows[:, place : place + 8] = np.ascontiguousarray(values)[:, None].view(np.uint8)
-        return rows
+                place[:count] = varint
+        half = 0.5 * drawn.T[[2, 5, 6]]
+        sin, cos = np.sin(half), np.cos(half)
+        x, y, odometry_x, odometry_y = drawn.T[[0, 1, 3, 4]]
+        wheels = (sin[2], cos[2]) * len(FRONT_WHEELS)
+        columns = (x, y, sin[0], cos[0], odometry_x, odometry_y, sin[1], cos[1], *wheels)
+        for place, column in zip(self._values, columns, strict=True):
+            place[:count] = column
+        return self._rows[:count]
 
     def _mark(self, number: int) -> float:
         self._marks.append(self.MARK * (1.0 + number))

@@ -9,7 +9,7 @@ Format: mcap.dev/spec.
 import os
 import struct
 import zlib
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +65,8 @@ class McapFile:
         self._channels: list[Channel] = []
         self._counts: dict[int, int] = {}
         self._first_ns, self._last_ns = 1 << 62, 0
-        self._chunks: list[ChunkIndex] = []
+        self._chunks: list[bytes] = []
+        """The index records of the chunks, made where these are written."""
         self._metadata: list[MetadataIndex] = []
         self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
         self._writer = ThreadPoolExecutor(max_workers=1)
@@ -202,9 +203,10 @@ class McapFile:
     def _await_chunk(self) -> None:
         """Wait until the chunk before is written. Raises the error that prevented it."""
         if self._written is not None:
-            wait([self._written])
-            written, self._written = self._written, None
-            written.result()
+            error = self._written.exception()
+            self._written = None
+            if error is not None:
+                raise error
 
     def _compress_and_write(self, data: bytes, entries: dict[int, list[bytes]], first: int, last: int) -> None:
         """Write a chunk: its messages, their times and offsets by channel, the first and the last time [ns]."""
@@ -230,7 +232,7 @@ class McapFile:
             parts += [INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + len(times), channel, len(times)), times]
             at += INDEX_HEADER.size + len(times)
         index.message_index_length = at - self._size - length
-        self._chunks.append(index)
+        self._chunks.append(_bytes(index))
         self._first_ns, self._last_ns = min(self._first_ns, first), max(self._last_ns, last)
         self._write(b"".join(parts))
 
@@ -247,8 +249,8 @@ class McapFile:
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
-        records = [statistics, *self._chunks, *self._metadata]
-        summary = self._described + b"".join(_bytes(record) for record in records)
+        metadata = b"".join(_bytes(record) for record in self._metadata)
+        summary = self._described + _bytes(statistics) + b"".join(self._chunks) + metadata
         # The checksum covers the summary and the footer up to the checksum itself.
         bare = _bytes(Footer(summary_start=self._size, summary_offset_start=0, summary_crc=0))[: FOOTER_SIZE - 4]
         footer = Footer(summary_start=self._size, summary_offset_start=0, summary_crc=zlib.crc32(summary + bare))

@@ -69,7 +69,6 @@ def test_a_call_about_all_signals_is_noted(name: str) -> None:
     assert listed >= sum(item.causality in ("input", "output", "local") for item in fmi_variables(model))
 
 
-
 @pytest.mark.parametrize(("any_model", "fmi"), MODELS_BY_FMI, indirect=["any_model"])
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_compiles_without_a_warning(any_model: Any, fmi: int, compiler: Any, tmp_path: Path) -> None:

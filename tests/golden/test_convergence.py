@@ -6,7 +6,6 @@ with the decision that changes; the list is checked from both sides.
 
 import math
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -22,6 +21,7 @@ from benchmarks.half_step import (
     random_runs,
     with_half_step,
 )
+from orchestrator.evaluation.verdict.summary import Event
 from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.simulation.cosim.fmu_files import can_compile
 from tests.golden.test_golden import kept
@@ -49,8 +49,8 @@ def test_an_ending_differs_by_each_of_its_parts() -> None:
 
 
 def test_the_decision_is_the_first_transition_that_differs() -> None:
-    def events(*changes: tuple[float, str, str]) -> list[SimpleNamespace]:
-        return [SimpleNamespace(t=t, from_=before, to=after) for t, before, after in changes]
+    def events(*changes: tuple[float, str, str]) -> list[Event]:
+        return [Event(t=t, from_=before, to=after, x=0.0, y=0.0, heading=0.0) for t, before, after in changes]
 
     whole = events((0.0, "IDLE", "FIRST_ARC"), (2.0, "FIRST_ARC", "PARKED"))
     assert first_difference(whole, events((0.0, "IDLE", "FIRST_ARC"), (2.0, "FIRST_ARC", "LOST"))) == (

@@ -425,11 +425,8 @@ def put_facing(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingPa
     if length_of(known) <= 2.0 * length_of(new):
         return replace_landmark(landmarks, index, new)
     shift = offset_of(known, new.x, new.y)
-    return replace_landmark(
-        landmarks,
-        index,
-        known._replace(x=known.x - shift * math.sin(known.heading), y=known.y + shift * math.cos(known.heading)),
-    )
+    moved = known._replace(x=known.x - shift * math.sin(known.heading), y=known.y + shift * math.cos(known.heading))
+    return replace_landmark(landmarks, index, moved)
 
 
 def is_better(before: Landmark, new: Landmark) -> bool:

@@ -246,13 +246,6 @@ static void connect(Runner *runner, const int64_t *every) {
     }
 }
 
-/* Take `size` bytes of `memory` behind those taken, where a double may begin; NULL of no memory. */
-static void *part(unsigned char *memory, size_t *taken, size_t size) {
-    unsigned char *begin = memory ? memory + *taken : NULL;
-    *taken += (size + sizeof(double) - 1) / sizeof(double) * sizeof(double);
-    return begin;
-}
-
 /* Lay out everything in `memory`, or in nothing if it is NULL; returns how many bytes it takes. */
 static size_t lay_out(Runner *runner, unsigned char *memory) {
     const Batch *batch = runner->batch;

@@ -5,6 +5,8 @@
 #include "faults.h"
 #include "library.h"
 
+#include <stddef.h>
+
 #define NUMBER ((int64_t)sizeof(double)) /* or integer [bytes] */
 
 typedef struct {
@@ -40,5 +42,16 @@ typedef struct {
 } Batch;
 
 typedef enum { STOP_TIME, STANDSTILL } End;
+
+#ifndef BATCH_ALIGNMENT /* of what is laid out in memory [bytes] */
+#define BATCH_ALIGNMENT sizeof(double)
+#endif
+
+/* Take `size` bytes of `memory` behind those taken, aligned; NULL of no memory. */
+static void *part(unsigned char *memory, size_t *taken, size_t size) {
+    unsigned char *begin = memory ? memory + *taken : NULL;
+    *taken += (size + BATCH_ALIGNMENT - 1) / BATCH_ALIGNMENT * BATCH_ALIGNMENT;
+    return begin;
+}
 
 #endif

@@ -3,8 +3,10 @@
  * A lane whose run is over begins the next one, so each lane has an exchange count of its own. A model without a form
  * in lanes has an instance for each of them. Holds no lock and no static data.
  */
-#include "batch.h"
 #include "lane_library.h"
+
+#define BATCH_ALIGNMENT sizeof(lane_d)
+#include "batch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -264,13 +266,6 @@ static void connect(Runner *runner, int is_every_step) {
         runner->mode = place_of(runner->slaves, batch->mode);
         runner->speed = place_of(runner->slaves, batch->speed);
     }
-}
-
-/* Take `size` bytes of `memory` behind those taken, where a vector may begin; NULL of no memory. */
-static void *part(unsigned char *memory, size_t *taken, size_t size) {
-    unsigned char *begin = memory ? memory + *taken : NULL;
-    *taken += (size + sizeof(lane_d) - 1) / sizeof(lane_d) * sizeof(lane_d);
-    return begin;
 }
 
 /* Lay out everything in `memory`, or in nothing if it is NULL; returns how many bytes it takes. */

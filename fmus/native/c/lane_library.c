@@ -5,20 +5,6 @@
  */
 #include "lane_library.h"
 
-#include LIBRARY_MEMBERS
-
-#include <stddef.h>
-
-#define LIBRARY_PASTE(a, b) a##b
-#define LIBRARY_JOIN(a, b) LIBRARY_PASTE(a, b)
-#define LIBRARY_CALL(function) LIBRARY_JOIN(LIBRARY_MODEL, _##function)
-
-#define MEMBER(path, kind) {(uint32_t)offsetof(LIBRARY_MODEL, path), LIBRARY_##kind},
-static const LibraryPlace library_places[] = {
-#include LIBRARY_MEMBERS
-};
-#undef MEMBER
-
 typedef struct {
     LIBRARY_MODEL model;
     LaneCall calls[LANE_CALLS];
@@ -56,14 +42,7 @@ static const LaneLibrary lane_table = {
     .table =
         {
             .size = sizeof(LaneInstance),
-            .outputs_offset = offsetof(LIBRARY_MODEL, outputs),
-            .outputs_size = sizeof((LIBRARY_MODEL *)0)->outputs,
-            .param_count = LIBRARY_PARAMS,
-            .input_count = LIBRARY_INPUTS,
-            .output_count = LIBRARY_OUTPUTS,
-            .params = library_places,
-            .inputs = library_places + LIBRARY_PARAMS,
-            .outputs = library_places + LIBRARY_PARAMS + LIBRARY_INPUTS,
+            LIBRARY_SIGNALS,
         },
     .lanes = LANES,
     .start = lanes_start,

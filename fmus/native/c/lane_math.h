@@ -148,23 +148,15 @@ static inline lane_d lane_turn_tan(lane_i live, lane_d x, const LaneTurn *turn) 
     return lane_pick_d(turn->is_small, x, found);
 }
 
-static __attribute__((noinline)) void lane_sin_of(LaneCall *call, lane_i live, lane_d x) {
-    const LaneTurn turn = lane_turn(x);
-    call->result = lane_pick_d(live, lane_turn_sin(live, x, &turn), call->result);
-    call->x = lane_pick_d(live, x, call->x);
-}
-
-static __attribute__((noinline)) void lane_cos_of(LaneCall *call, lane_i live, lane_d x) {
-    const LaneTurn turn = lane_turn(x);
-    call->result = lane_pick_d(live, lane_turn_cos(live, x, &turn), call->result);
-    call->x = lane_pick_d(live, x, call->x);
-}
-
-static __attribute__((noinline)) void lane_tan_of(LaneCall *call, lane_i live, lane_d x) {
-    const LaneTurn turn = lane_turn(x);
-    call->result = lane_pick_d(live, lane_turn_tan(live, x, &turn), call->result);
-    call->x = lane_pick_d(live, x, call->x);
-}
+#define LANE_OF_TURN(name)                                                                                 \
+    static __attribute__((noinline)) void lane_##name##_of(LaneCall *call, lane_i live, lane_d x) {        \
+        const LaneTurn turn = lane_turn(x);                                                                \
+        call->result = lane_pick_d(live, lane_turn_##name(live, x, &turn), call->result);                  \
+        call->x = lane_pick_d(live, x, call->x);                                                           \
+    }
+LANE_OF_TURN(sin)
+LANE_OF_TURN(cos)
+LANE_OF_TURN(tan)
 
 /* Sine in `result`, cosine in `other`. */
 static __attribute__((noinline)) void lane_sincos_of(LaneCall *call, lane_i live, lane_d x) {

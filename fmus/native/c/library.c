@@ -6,24 +6,11 @@
  */
 #include "library.h"
 
-#include LIBRARY_MEMBERS
-
-#include <stddef.h>
 #include <string.h>
-
-#define LIBRARY_PASTE(a, b) a##b
-#define LIBRARY_JOIN(a, b) LIBRARY_PASTE(a, b)
-#define LIBRARY_CALL(function) LIBRARY_JOIN(LIBRARY_MODEL, _##function)
 
 #ifndef LIBRARY_STORE
 #define LIBRARY_STORE(model)
 #endif
-
-#define MEMBER(path, kind) {(uint32_t)offsetof(LIBRARY_MODEL, path), LIBRARY_##kind},
-static const LibraryPlace library_places[] = {
-#include LIBRARY_MEMBERS
-};
-#undef MEMBER
 
 static void library_put(void *instance, const LibraryPlace *places, int64_t count, const double *values) {
     for (int64_t i = 0; i < count; i++)
@@ -45,14 +32,7 @@ static void library_step(void *instance, int64_t dt_ns) {
 
 static const Library library_table = {
     .size = sizeof(LIBRARY_MODEL),
-    .outputs_offset = offsetof(LIBRARY_MODEL, outputs),
-    .outputs_size = sizeof((LIBRARY_MODEL *)0)->outputs,
-    .param_count = LIBRARY_PARAMS,
-    .input_count = LIBRARY_INPUTS,
-    .output_count = LIBRARY_OUTPUTS,
-    .params = library_places,
-    .inputs = library_places + LIBRARY_PARAMS,
-    .outputs = library_places + LIBRARY_PARAMS + LIBRARY_INPUTS,
+    LIBRARY_SIGNALS,
     .start = library_start,
     .step = library_step,
 };

@@ -45,4 +45,30 @@ static inline void library_write(unsigned char *at, uint32_t kind, double value)
         *(bool *)(void *)at = value != 0.0;
 }
 
+#ifdef LIBRARY_MEMBERS /* a file that has one model: LIBRARY_MODEL, see library.c */
+#include LIBRARY_MEMBERS
+
+#include <stddef.h>
+
+#define LIBRARY_PASTE(a, b) a##b
+#define LIBRARY_JOIN(a, b) LIBRARY_PASTE(a, b)
+#define LIBRARY_CALL(function) LIBRARY_JOIN(LIBRARY_MODEL, _##function)
+
+#define MEMBER(path, kind) {(uint32_t)offsetof(LIBRARY_MODEL, path), LIBRARY_##kind},
+static const LibraryPlace library_places[] = {
+#include LIBRARY_MEMBERS
+};
+#undef MEMBER
+
+#define LIBRARY_SIGNALS                                                \
+    .outputs_offset = offsetof(LIBRARY_MODEL, outputs),                \
+    .outputs_size = sizeof((LIBRARY_MODEL *)0)->outputs,               \
+    .param_count = LIBRARY_PARAMS,                                     \
+    .input_count = LIBRARY_INPUTS,                                     \
+    .output_count = LIBRARY_OUTPUTS,                                   \
+    .params = library_places,                                          \
+    .inputs = library_places + LIBRARY_PARAMS,                         \
+    .outputs = library_places + LIBRARY_PARAMS + LIBRARY_INPUTS
+#endif
+
 #endif

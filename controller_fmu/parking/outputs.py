@@ -97,9 +97,8 @@ def alarm_of(memory: ParkingMemory) -> int:
         return ParkingAlarm.TAKEN_OVER
     if memory.verdict.is_blocked:
         return ParkingAlarm.OBSTACLE
-    for number in range(MAX_SENSORS):
-        if is_silent(memory.perception.local_map.missed, number):
-            return ParkingAlarm.SENSOR_LOST
+    if any(is_silent(memory.perception.local_map.missed, number) for number in range(MAX_SENSORS)):
+        return ParkingAlarm.SENSOR_LOST
     if memory.state != ParkingState.SEARCHING:
         return ParkingAlarm.NONE
     if memory.search.is_fast:
@@ -113,13 +112,10 @@ def alarm_of(memory: ParkingMemory) -> int:
 
 
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
-    confirmed = 0
-    for landmark in memory.perception.local_map.landmarks:
-        if is_confirmed(landmark, params.mapping):
-            confirmed += 1
+    landmarks = memory.perception.local_map.landmarks
     return ParkingSignals(
         state=memory.state,
-        landmarks=confirmed,
+        landmarks=sum(1 if is_confirmed(landmark, params.mapping) else 0 for landmark in landmarks),
         steps=memory.plan.steps,
         plans=memory.plan.plans,
         margin=memory.progress.path.margin,

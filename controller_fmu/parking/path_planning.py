@@ -82,14 +82,8 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
 
 def obstacle_count(memory: ParkingMemory) -> int:
     """Return how many landmarks and remembered echoes there are."""
-    count = 0
-    for landmark in memory.perception.local_map.landmarks:
-        if landmark.type != LandmarkType.NONE:
-            count += 1
-    for echo in memory.perception.remembered:
-        if echo.is_present:
-            count += 1
-    return count
+    landmarks = sum(1 if item.type != LandmarkType.NONE else 0 for item in memory.perception.local_map.landmarks)
+    return landmarks + sum(1 if echo.is_present else 0 for echo in memory.perception.remembered)
 
 
 def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -133,10 +127,7 @@ def _without_passed(echo: EchoObstacle, view: ViewAtRest) -> EchoObstacle:
 
 def _still_there(echo: EchoObstacle, views: tuple[ViewAtRest, ...]) -> EchoObstacle:
     """Return an echo unless a sensor measures through it."""
-    is_gone = False
-    for view in views:
-        if predict_range_to_point(view.sensor, echo.x, echo.y).distance < view.limit:
-            is_gone = True
+    is_gone = any(predict_range_to_point(view.sensor, echo.x, echo.y).distance < view.limit for view in views)
     return EchoObstacle() if is_gone else echo
 
 
@@ -281,8 +272,9 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         return _with_pose_request(memory, inputs, params)
     slot = correct_slot_by_map(memory.search, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
-    relaxed = memory.plan.is_relaxed
-    beside = tuple(_as_obstacle(landmark, slot, relaxed, outline, pose) for landmark in landmarks)
+    beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
+    if memory.plan.is_relaxed:
+        beside = tuple(without_inside(landmark, slot) for landmark in beside)
     place = VehiclePlace(pose, road)
     mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
     half_angle = params.car.ultrasonic.half_angle
@@ -311,14 +303,6 @@ def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> Pa
     """Return the memory with other landmarks in its map."""
     perception = memory.perception
     return memory._replace(perception=perception._replace(local_map=perception.local_map._replace(landmarks=landmarks)))
-
-
-def _as_obstacle(
-    landmark: Landmark, slot: SlotCandidate, relaxed: bool, outline: VehicleOutline, pose: Pose
-) -> Landmark:
-    """Return a landmark as an obstacle: clear of the vehicle, and none inside a slot if ``relaxed``."""
-    beside = away_from_vehicle(landmark, outline, pose)
-    return without_inside(beside, slot) if relaxed else beside
 
 
 def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:

@@ -143,7 +143,7 @@ def _with_tracks(
     params: ParkingParams,
 ) -> Perception:
     """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
-    echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
+    echoes = tuple(echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
     landmarks = _with_facing(perception.local_map.landmarks, search, tracks, inputs, params)
     yields = yield_cycles(params) if any(is_yielded_to(track) for track in tracks) else perception.yields
     return perception._replace(
@@ -241,24 +241,35 @@ def surface_near(expected: PredictedRange, measured: float, params: MonitorParam
     return side._replace(low=max(side.low, -HALF_SENSOR_SPACING), high=min(side.high, HALF_SENSOR_SPACING))
 
 
-def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
-    """Return what the monitor must keep clear of, from the track of one sensor."""
+def echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
+    """Return what the monitor must keep clear of, from the track of one sensor.
+
+    An echo nearer than that of the corner that is expected may come from anywhere in the cone: it is the chord of it.
+    Where none was expected yet its direction is not known: it was beyond the range of those monitored.
+    """
     sensors = params.car.ultrasonic
     sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
     distance = max(track.range, 0.0)
     unknown = track.unexplained > 0
-    ux = sensor.axis_x if unknown else track.ux
-    uy = sensor.axis_y if unknown else track.uy
+    surface = EchoSurface() if unknown else track.surface
+    is_nearer = track.missed == 0 and track.expected - track.range > MAX_DISPLACEMENT
+    is_anywhere = not unknown and is_nearer and surface.low == surface.high
+    if is_anywhere:
+        half = distance * sensor.cone_sin
+        surface = EchoSurface(-sensor.axis_y, sensor.axis_x, -half, half)
+        distance = distance * sensor.cone_cos
+    ux = sensor.axis_x if unknown or is_anywhere else track.ux
+    uy = sensor.axis_y if unknown or is_anywhere else track.uy
     return EchoObstacle(
         sensor.x + distance * ux,
         sensor.y + distance * uy,
         closing_speed(track),
-        track.confirmations > 0 and track.range < MAX_MONITORED_RANGE,
+        track.confirmations > 0 and track.expected > 0.0 and track.range < MAX_MONITORED_RANGE,
         unknown,
         ux,
         uy,
         distance,
-        EchoSurface() if unknown else track.surface,
+        surface,
     )
 
 

@@ -74,10 +74,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
 
 def is_clear_ahead(readings: tuple[float, ...]) -> bool:
     """Return whether all sensors of the front bumper measure far enough for the driver to go on; readings in m."""
-    nearest = CLEAR_AHEAD
-    for number in range(BUMPER_SENSORS // 2):
-        nearest = min(nearest, readings[number])
-    return nearest >= CLEAR_AHEAD
+    return all(readings[number] >= CLEAR_AHEAD for number in range(BUMPER_SENSORS // 2))
 
 
 def road_side(chosen: int) -> float:
@@ -92,18 +89,16 @@ def with_neighbours(
     road = side * (0.5 * car.width + MAX_STAND_OUT)
     deep = road - side * CAR_WIDTH
     far = CAR_LENGTH + car.ultrasonic.max_range
-    if box.front < far:
-        end = box.front + CAR_LENGTH
-        landmarks = _insert(landmarks, _segment(Point(box.front, deep), Point(box.front, road), pose, params))
-        landmarks = _insert(landmarks, _segment(Point(box.front, road), Point(end, road), pose, params))
-    if box.rear > -far:
-        end = box.rear - CAR_LENGTH
-        landmarks = _insert(landmarks, _segment(Point(box.rear, deep), Point(box.rear, road), pose, params))
-        landmarks = _insert(landmarks, _segment(Point(box.rear, road), Point(end, road), pose, params))
+    for ahead in (1.0, -1.0):
+        bumper = box.front if ahead > 0.0 else box.rear
+        corner = Point(bumper, road)
+        if ahead * bumper < far:
+            landmarks = _with_segment(landmarks, Point(bumper, deep), corner, pose, params)
+            landmarks = _with_segment(landmarks, corner, Point(bumper + ahead * CAR_LENGTH, road), pose, params)
     kerb = box.right if side > 0.0 else box.left
     if abs(kerb) >= far:
         kerb = -road
-    return _insert(landmarks, _segment(Point(box.rear, kerb), Point(box.front, kerb), pose, params))
+    return _with_segment(landmarks, Point(box.rear, kerb), Point(box.front, kerb), pose, params)
 
 
 def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline) -> Pose:
@@ -113,15 +108,16 @@ def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline)
     return Pose(point.x, point.y, pose.heading)
 
 
-def _segment(a: Point, b: Point, pose: Pose, params: MappingParams) -> Landmark:
-    """Return the segment between two points of the vehicle's frame, known to ``MAX_STAND_OUT`` [m]."""
+def _with_segment(
+    landmarks: tuple[Landmark, ...], a: Point, b: Point, pose: Pose, params: MappingParams
+) -> tuple[Landmark, ...]:
+    """Return the landmarks with the segment between two points of the vehicle's frame, known to ``MAX_STAND_OUT`` [m].
+
+    It takes a free place, or that of the least confirmed.
+    """
     p = point_from_frame(a.x, a.y, pose)
     q = point_from_frame(b.x, b.y, pose)
     variance = 0.25 * MAX_STAND_OUT * MAX_STAND_OUT
     found = segment_between(p, q, Point(pose.x, pose.y), variance, variance)
-    return found._replace(start_known=True, end_known=True, confirmations=params.confirmations)
-
-
-def _insert(landmarks: tuple[Landmark, ...], new: Landmark) -> tuple[Landmark, ...]:
-    """Return the landmarks with a new one, in a free place or that of the least confirmed."""
+    new = found._replace(start_known=True, end_known=True, confirmations=params.confirmations)
     return replace_landmark(landmarks, free_index(landmarks), new)

@@ -164,6 +164,7 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         max(memory.progress.upcoming.left, 0.0),
         params.monitor.brake_delay,
         params.monitor.brake_deceleration,
+        memory.progress.stand,
     )
     outline = vehicle_outline(params.car, 1.0)
     verdict = monitor_collision(
@@ -334,7 +335,7 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         )
         memory = begin_plan(memory)
     if state == ParkingState.STEERING and before != ParkingState.STEERING:
-        memory = memory._replace(progress=next_segment(memory.progress, context))
+        memory = memory._replace(progress=next_segment(memory.progress, inputs.odometry, context))
     if state == ParkingState.DRIVING and before != ParkingState.DRIVING:
         memory = memory._replace(progress=set_out(memory.progress))
     memory = memory._replace(state=state)

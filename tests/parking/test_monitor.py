@@ -24,6 +24,8 @@ from controller_fmu.parking.monitor.collision_monitor import (
     MonitorVerdict,
     VehicleMotion,
     monitor_collision,
+    side_end,
+    side_start,
     speed_for_distance,
     stopping_distance,
 )
@@ -42,7 +44,7 @@ from controller_fmu.parking.objects.track import (
 from controller_fmu.parking.obstacle_map import without_explained
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.perception import surface_near
+from controller_fmu.parking.perception import echo_obstacle, surface_near
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
@@ -179,6 +181,29 @@ def test_an_echo_far_from_where_a_side_is_expected_is_not_of_that_side() -> None
     assert rear_corner_echo(-0.25).surface == EchoSurface()
 
 
+def test_an_echo_nearer_than_the_corner_expected_may_come_from_anywhere_in_the_cone() -> None:
+    """A pillar whose road side was mapped was touched by its next corner, at the boundary of an outer sensor's cone."""
+    params = ParkingParams()
+    sensor = sensor_pose(params.car.ultrasonic.mounts[3], params.car.ultrasonic.half_angle, Pose())
+    corner = ObjectTrack(
+        TrackStatus.CONFIRMED, 0.22, confirmations=9, expected=0.40, ux=sensor.axis_x, uy=sensor.axis_y
+    )
+    echo = echo_obstacle(corner, 3, ParkingSystemInput(), params)
+    axis = math.atan2(sensor.axis_y, sensor.axis_x)
+    for end, side in ((side_start(echo), -1.0), (side_end(echo), 1.0)):
+        bearing = axis + side * params.car.ultrasonic.half_angle
+        assert end.x == pytest.approx(sensor.x + 0.22 * math.cos(bearing))
+        assert end.y == pytest.approx(sensor.y + 0.22 * math.sin(bearing))
+    where_expected = echo_obstacle(corner._replace(expected=0.24), 3, ParkingSystemInput(), params)
+    assert where_expected.surface == EchoSurface()
+
+
+def test_an_echo_in_no_known_direction_is_no_obstacle() -> None:
+    """One that had come from beyond the monitored range stood ahead in the odometry frame, inside the vehicle."""
+    beyond = ObjectTrack(TrackStatus.CONFIRMED, 1.49, confirmations=9)
+    assert not echo_obstacle(beyond, 11, ParkingSystemInput(), ParkingParams()).is_present
+
+
 def test_an_approaching_object_stops_earlier() -> None:
     still = EchoObstacle(FRONT + 0.6, 0.0, 0.0, True, True)
     free = verdict(0.5, echoes=(still,) + NOTHING[1:]).free_distance
@@ -188,6 +213,33 @@ def test_an_approaching_object_stops_earlier() -> None:
 def test_the_vehicle_may_leave_what_it_stands_beside() -> None:
     assert not verdict(0.0, wall_at(FRONT + 0.02), direction=-1.0).is_blocked
     assert verdict(0.0, wall_at(FRONT + 0.02)).is_blocked
+
+
+def side_wall(gap: float, turn: float) -> tuple[Landmark, ...]:
+    """Return a wall ``gap`` [m] to the left of a vehicle at the origin, which drives at an angle towards it."""
+    y = OUTLINE.half_width + gap
+    wall = Landmark(LandmarkType.SEGMENT, OUTLINE.centre_ahead, y, -turn, start=-9.0, end=9.0, confirmations=9)
+    return (wall,) + EMPTY[1:]
+
+
+@pytest.mark.parametrize("turn", [0.005, 0.02, 0.05])
+def test_a_vehicle_does_not_scrape_along_a_wall_by_a_little_at_each_sample(turn: float) -> None:
+    """Each sample allowed 5 mm more: a neighbour was scraped 33 cm deep, and what overlapped limited nothing."""
+    wall = side_wall(0.03 + turn * OUTLINE.half_length, turn)
+    x = 0.0
+    for _ in range(2000):
+        motion = VehicleMotion(Pose(x, 0.0, 0.0), 1.0, 0.1, 0.0, 10.0, 0.1, 2.0, Pose())
+        seen = monitor_collision(motion, OUTLINE, wall, NOTHING, MonitorParams(), MappingParams())
+        if seen.is_blocked:
+            break
+        x += 0.1 * 0.01
+    assert seen.is_blocked
+    assert turn * x <= 0.0055
+
+
+def test_what_overlaps_the_vehicle_may_be_left_but_not_driven_into() -> None:
+    assert verdict(0.0, wall_at(FRONT - 0.1)).is_blocked
+    assert not verdict(0.0, wall_at(FRONT - 0.1), direction=-1.0).is_blocked
 
 
 def test_a_track_finds_the_closing_speed() -> None:

@@ -232,7 +232,7 @@ def test_the_vehicle_sets_out_when_its_wheel_may_turn_the_rest_on_the_move(share
     path = path_of((1.5, 0.1), (-2.0, 0.0), (2.0, 0.3))
     here, stop = standstill_before(path, 1, CONTEXT), standstill_before(path, 2, CONTEXT)
     before = begin_path(PathProgress(), path, Pose(), CONTEXT)
-    progress = next_segment(before._replace(remaining=0.0), CONTEXT)
+    progress = next_segment(before._replace(remaining=0.0), Pose(), CONTEXT)
     params = ParkingParams()
     assert progress.upcoming.standstill == stop
     assert stop.after > 1.2 * here.after > 0.0

@@ -46,6 +46,8 @@ class PathProgress(NamedTuple):
     """The one in hand."""
     begin: Pose = Pose()
     """Where it begins."""
+    stand: Pose = Pose()
+    """Where the vehicle stood before it set out on it, or on the segments of the same gear before it."""
     remaining: float = 0.0
     """Of it [m]."""
     reference: Pose = Pose()
@@ -76,6 +78,7 @@ def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: Fo
     return PathProgress(
         path=path,
         begin=start,
+        stand=start,
         remaining=remaining,
         reference=start,
         upcoming=upcoming_stop(path, 0, remaining, context),
@@ -124,8 +127,8 @@ def track_path(progress: PathProgress, pose: Pose, speed: float, context: Follow
     )
 
 
-def next_segment(progress: PathProgress, context: FollowingContext) -> PathProgress:
-    """Return the progress of a standing vehicle: on the segment in hand, or on the next if that is driven."""
+def next_segment(progress: PathProgress, pose: Pose, context: FollowingContext) -> PathProgress:
+    """Return the progress of a vehicle that stands at ``pose``: on the segment in hand, if driven on the next."""
     if progress.remaining > MIN_REMAINING:
         return progress
     segment = progress.path.segments[progress.segment]
@@ -135,6 +138,7 @@ def next_segment(progress: PathProgress, context: FollowingContext) -> PathProgr
     return progress._replace(
         segment=number,
         begin=begin,
+        stand=pose,
         remaining=remaining,
         reference=begin,
         upcoming=upcoming_stop(progress.path, number, remaining, context),

@@ -1,6 +1,8 @@
 """The exact distance from a vehicle's rectangular outline to a straight edge."""
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.geometry.polygons import clip_to_box
+from modelkit.geometry import Point
 
 MIN_EDGE_SQUARE = 1e-12
 """A straight edge of a squared length [m2] below this, a micrometre, is a point."""
@@ -39,6 +41,18 @@ def edge_distance_squared(ax: float, ay: float, bx: float, by: float, car: Vehic
         return 0.0
     best = _point_distance(ax, ay, half_length, half_width, best)
     return _point_distance(bx, by, half_length, half_width, best)
+
+
+def overlap_depth(start: Point, end: Point, car: VehicleOutline) -> float:
+    """Return how far [m] a segment that cuts a car about the origin has to move, ahead, back or aside, to leave it."""
+    low = Point(-car.half_length, -car.half_width)
+    part = clip_to_box(start, end, low, Point(car.half_length, car.half_width))
+    x0 = start.x + part.enter * (end.x - start.x)
+    y0 = start.y + part.enter * (end.y - start.y)
+    x1 = start.x + part.leave * (end.x - start.x)
+    y1 = start.y + part.leave * (end.y - start.y)
+    along = car.half_length + min(max(x0, x1), -min(x0, x1))
+    return min(along, car.half_width + min(max(y0, y1), -min(y0, y1)))
 
 
 def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:

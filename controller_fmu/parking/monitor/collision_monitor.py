@@ -14,7 +14,7 @@ from controller_fmu.parking.geometry.outline import (
     outline_frame,
     pose_along_arc,
 )
-from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared, overlap_depth
 from controller_fmu.parking.map.landmark import Landmark, end_point, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
@@ -24,7 +24,7 @@ from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 MAX_POSES = 8
-"""Poses of the swept outline: over half a metre they are 6 cm apart."""
+"""Poses of the swept outline: over half a metre they are 6 cm apart; what is free up to the last free one counts."""
 LOOK_AHEAD = 0.4
 """The outline is swept this far [m] beyond the stopping distance, so that the speed falls smoothly."""
 SLOWING_FRACTION = 0.5
@@ -32,7 +32,7 @@ SLOWING_FRACTION = 0.5
 NO_LIMIT = 100.0
 """Speed [m/s] or distance [m] that is not limited."""
 MIN_APPROACH = 0.005
-"""Only what comes nearer by more than this [m] counts: the vehicle may leave what it stands beside."""
+"""The vehicle may leave what it stands beside, if it comes nearer by at most this [m] until it stands again."""
 MIN_RESTART_DISTANCE = 0.1
 """A standing vehicle sets out only where it may go at least this far [m]."""
 MAX_RATE_TIME = 2.0
@@ -68,6 +68,8 @@ class VehicleMotion(NamedTuple):
     """Distance to the next planned stop."""
     delay: float
     deceleration: float
+    stand: Pose = Pose()
+    """Where it stood before it set out in this direction."""
 
 
 class OutlineSweep(NamedTuple):
@@ -79,6 +81,8 @@ class OutlineSweep(NamedTuple):
     outline: VehicleOutline = VehicleOutline()
     here: OutlineFrame = OutlineFrame()
     """Where it is now."""
+    stand: OutlineFrame = OutlineFrame()
+    """Where it stood."""
     reach: float = 0.0
     """No point of it moves farther [m]."""
 
@@ -115,7 +119,7 @@ def monitor_collision(
             for step in range(MAX_POSES)
         )
         reach = horizon * max_point_speed_ratio(outline, motion.curvature)
-        sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), reach)
+        sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), outline_frame(motion.stand), reach)
         by_map = free_by_map(motion, sweep, landmarks, params, mapping)
         by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
         by_map = min(by_map, by_echoes)
@@ -139,7 +143,10 @@ def free_by_map(
     radius = math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
     reach = sweep.horizon + radius + outline.half_length
     for landmark in landmarks:
-        if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach):
+        farthest = reach + max(landmark.end, -landmark.start)
+        dx = landmark.x - motion.pose.x
+        dy = landmark.y - motion.pose.y
+        if is_confirmed(landmark, mapping) and dx * dx + dy * dy < farthest * farthest:
             a = start_point(landmark)
             free = min(free, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
     return free
@@ -165,15 +172,20 @@ def free_by_echoes(
 def free_towards(
     motion: VehicleMotion, sweep: OutlineSweep, a: Point, b: Point, kept: float, closing_speed: float
 ) -> float:
-    """Return how far [m] the outline goes before it is nearer than ``kept`` [m] to the line a-b, as that approaches."""
-    least = line_distance(a, b, sweep.here, sweep.outline) - MIN_APPROACH
-    if least - sweep.reach >= kept + closing_speed * (motion.delay + MAX_RATE_TIME):
+    """Return how far [m] the outline goes before it is nearer than ``kept`` [m] to the line a-b, as that approaches.
+
+    The vehicle may leave what it stands beside, but come no nearer: what it may at each sample it must not at all.
+    """
+    here = line_distance(a, b, sweep.here, sweep.outline)
+    if here - sweep.reach >= kept + closing_speed * (motion.delay + MAX_RATE_TIME):
         return NO_LIMIT
+    least = kept
+    if closing_speed <= 0.0:
+        least = min(kept, min(here, line_distance(a, b, sweep.stand, sweep.outline) - MIN_APPROACH))
     for step in range(1, MAX_POSES + 1):
         travelled = sweep.horizon * step / MAX_POSES
         time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
-        distance = line_distance(a, b, sweep.poses[step - 1], sweep.outline)
-        if distance < kept + closing_speed * time and (distance < least or closing_speed > 0.0):
+        if line_distance(a, b, sweep.poses[step - 1], sweep.outline) < least + closing_speed * time:
             return sweep.horizon * (step - 1) / MAX_POSES
     return NO_LIMIT
 
@@ -196,28 +208,18 @@ def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -
 
 
 def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the outline of a vehicle at ``frame`` to the segment a-b, at most ``NO_LIMIT``."""
+    """Return the distance [m] from the outline of a vehicle at ``frame`` to the segment a-b, at most ``NO_LIMIT``.
+
+    Inside the outline it is negative: how far the segment would have to move to leave it.
+    """
     cos = frame.cos
     sin = frame.sin
     x = frame.x + outline.centre_ahead * cos
     y = frame.y + outline.centre_ahead * sin
-    square = edge_distance_squared(
-        (a.x - x) * cos + (a.y - y) * sin,
-        (a.y - y) * cos - (a.x - x) * sin,
-        (b.x - x) * cos + (b.y - y) * sin,
-        (b.y - y) * cos - (b.x - x) * sin,
-        outline,
-        NO_LIMIT * NO_LIMIT,
-    )
-    return math.sqrt(square)
-
-
-def _is_within(landmark: Landmark, pose: Pose, reach: float) -> bool:
-    """Return whether any point of a landmark may lie within ``reach`` [m] of a pose."""
-    radius = reach + max(landmark.end, -landmark.start)
-    dx = landmark.x - pose.x
-    dy = landmark.y - pose.y
-    return dx * dx + dy * dy < radius * radius
+    start = Point((a.x - x) * cos + (a.y - y) * sin, (a.y - y) * cos - (a.x - x) * sin)
+    end = Point((b.x - x) * cos + (b.y - y) * sin, (b.y - y) * cos - (b.x - x) * sin)
+    square = edge_distance_squared(start.x, start.y, end.x, end.y, outline, NO_LIMIT * NO_LIMIT)
+    return math.sqrt(square) if square > 0.0 else -overlap_depth(start, end, outline)
 
 
 def stopping_distance(speed: float, delay: float, deceleration: float) -> float:

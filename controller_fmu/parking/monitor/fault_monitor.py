@@ -1,12 +1,13 @@
 """The fault monitor: each quantity that must not last has a clock [ns]; a clock that runs out is a reason to fail."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from controller_fmu.common.monitor import is_unmoved, is_usable_input
 from controller_fmu.common.params import LimitParams
 from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest, has_failed, watch_steering
 from controller_fmu.interface import Reason, SensedWithFault
 from controller_fmu.parking.measurement.cycle import seconds
+from controller_fmu.parking.signals import ParkingSystemInput
 from modelkit.vocabulary import Gear, Pose
 
 SETTLING_TIME = 0.3
@@ -18,26 +19,6 @@ MAX_SHIFT_SPEED = 0.2
 PULL_ANGLE = 0.3
 PULL_TIME = 0.2
 """A driver turns the wheel away from a request that is off by more than this [rad], for longer than this [s]."""
-
-
-class DriverControls(Protocol):
-    """What the driver does, and the speed."""
-
-    @property
-    def measured_speed(self) -> float:
-        """[m/s]"""
-
-    @property
-    def driver_takeover(self) -> bool:
-        """Signal of the vehicle."""
-
-    @property
-    def gear(self) -> int:
-        """Selector position."""
-
-    @property
-    def brake_pedal(self) -> float:
-        """From 0 to 1."""
 
 
 class ExpectedMotion(NamedTuple):
@@ -103,7 +84,7 @@ def advance_clocks(
     )
 
 
-def is_taken_over(clocks: FaultClocks, inputs: DriverControls, driver_drives: bool) -> bool:
+def is_taken_over(clocks: FaultClocks, inputs: ParkingSystemInput, driver_drives: bool) -> bool:
     """Return whether the driver has taken over: by signal, gear selector, steering wheel, or brake pedal.
 
     Where the driver controls the speed as prompted, the pedal is none.

@@ -26,8 +26,8 @@ from controller_fmu.parking.measurement.sensor import (
     MAX_SENSORS,
     REAR_MIDDLE,
     ReadingStatus,
+    measurement_of,
     range_variance,
-    reading_status,
     sensor_pose,
 )
 from controller_fmu.parking.measurement.silent_sensor import is_silent
@@ -108,16 +108,18 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
     if not search.slot_filter.is_begun or driven <= 0.0:
         return search.slot_filter
     slot_filter = predict_slot(search.slot_filter, inputs.odometry, driven, params.mapping)
-    variance = range_variance(params.mapping.range_noise, sensors.resolution)
+    readings = memory.perception.cycle.readings
     for number in range(MAX_SENSORS):
-        reading = memory.perception.cycle.readings[number]
-        status = reading_status(reading, sensors)
-        sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+        found = measurement_of(number, readings[number], inputs.odometry, sensors, params.mapping.range_noise)
+        sensor = found.sensor
+        status = found.status
         if status == ReadingStatus.ECHO:
-            slot_filter = update_slot(slot_filter, search.slot, sensor, reading, variance, params.mapping.gate)
+            slot_filter = update_slot(
+                slot_filter, search.slot, sensor, found.range, found.variance, params.mapping.gate
+            )
         is_silent_one = is_silent(memory.perception.local_map.missed, number)
         if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO) and not is_silent_one:
-            slot_filter = count_absent(slot_filter, search.slot, sensor, reading)
+            slot_filter = count_absent(slot_filter, search.slot, sensor, found.range)
     return slot_filter
 
 
@@ -199,17 +201,16 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     perception = memory.perception
     sensors = params.car.ultrasonic
     reading = perception.cycle.readings[number]
-    status = reading_status(reading, sensors)
-    sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+    found = measurement_of(number, reading, inputs.odometry, sensors, params.mapping.range_noise)
+    sensor = found.sensor
     before = sensor_pose(sensors.mounts[number], sensors.half_angle, perception.local_map.pose)
     approach = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
-    is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE)
-    variance = range_variance(params.mapping.range_noise, sensors.resolution)
+    is_echo = found.status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE)
     before_track = perception.tracks[number]
     measured = reading
-    if status == ReadingStatus.BLIND_ZONE and before_track.status != TrackStatus.NONE:
+    if found.status == ReadingStatus.BLIND_ZONE and before_track.status != TrackStatus.NONE:
         measured = range_in_blind_zone(before_track, approach, reading)
-    track = update_track(before_track, is_echo, measured, approach, variance, sensors.cycle)
+    track = update_track(before_track, is_echo, measured, approach, found.variance, sensors.cycle)
     static = static_approach(before, sensor)
     stands = abs(inputs.measured_speed) <= params.threshold.standstill
     if stands or before_track.unexplained > 0:

@@ -9,12 +9,11 @@ from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
-from controller_fmu.parking.map.chain_update import SideReading
 from controller_fmu.parking.map.landmark import LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.oblique_side import ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import reading_status, sensor_pose
+from controller_fmu.parking.measurement.sensor import Measurement, reading_status, sensor_pose
 from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot
 from controller_fmu.parking.slots.goal import goal_pose
@@ -178,6 +177,6 @@ def test_a_turning_sensor_shows_no_oblique_side() -> None:
         vehicle = pose_along_arc(Pose(), -0.04 * step, -0.66)
         measured = exact_ranges(vehicle, [Box(3.8, -2.5, 0.0, 4.0, 1.8)], sensors)[11]
         sensor = sensor_pose(sensors.mounts[11], sensors.half_angle, vehicle)
-        reading = SideReading(sensor, reading_status(measured, sensors), measured, 1e-4)
+        reading = Measurement(sensor, reading_status(measured, sensors), measured, 1e-4)
         update = update_oblique_sides(update.boundaries, reading)
         assert not any(side.type for side in update.passed)

@@ -8,7 +8,6 @@ import pytest
 from controller_fmu.parking.geometry.outline import extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import (
     ChainEvent,
-    SideReading,
     as_point,
     chain_event,
     edge_guess,
@@ -39,7 +38,7 @@ from controller_fmu.parking.map.landmark import (
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.segment_fit import EndGuess, SegmentGuess, fit_segment
-from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
+from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
 from modelkit.geometry import Box, Point
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
@@ -245,8 +244,8 @@ def test_the_extent_of_the_outline_within_a_box_is_exact() -> None:
 @pytest.mark.parametrize(("measured", "is_edge"), [(3.0, True), (4.8, False)])
 def test_a_side_is_open_where_it_leaves_the_range_of_the_sensor(measured: float, is_edge: bool) -> None:
     """On a pass oblique to the row a car begins to be measured at 5 m, though it began long before."""
-    echo = SideReading(DOWN, ReadingStatus.ECHO, measured, 1e-4)
+    echo = Measurement(DOWN, ReadingStatus.ECHO, measured, 1e-4)
     chain = next_chain(EchoChain(lost=3), echo, ChainEvent.CONTINUES)
     assert chain.begins_at_edge == is_edge
-    beyond = SideReading(DOWN._replace(x=1.0), ReadingStatus.NO_ECHO, 5.0, 1e-4)
+    beyond = Measurement(DOWN._replace(x=1.0), ReadingStatus.NO_ECHO, 5.0, 1e-4)
     assert (chain_event(chain._replace(lost=3), beyond) == ChainEvent.ENDS_AT_EDGE) == is_edge

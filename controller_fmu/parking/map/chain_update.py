@@ -45,7 +45,7 @@ from controller_fmu.parking.map.segment_fit import (
     fit_segment,
 )
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predict_range_to_segment
-from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
+from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
 from modelkit.maths import wrap_angle
 
 MIN_ECHOES = 4
@@ -83,15 +83,6 @@ MAX_MISFIT = 4.0
 """Mean squared residual over the variance of a chain that no segment explains."""
 
 
-class SideReading(NamedTuple):
-    """A reading of a sensor on a flank: where it was, its ``ReadingStatus``, range [m] and variance [m2]."""
-
-    sensor: SensorPose
-    status: int
-    range: float
-    variance: float
-
-
 class ChainEnd(NamedTuple):
     """Whether a part of a chain ends at an edge, else how far [m] inside its last echo the side may end."""
 
@@ -116,7 +107,7 @@ class ChainEvent(IntEnum):
     """The body's edge has been passed."""
 
 
-def chain_event(chain: EchoChain, reading: SideReading) -> int:
+def chain_event(chain: EchoChain, reading: Measurement) -> int:
     """Return the ``ChainEvent`` of a reading."""
     if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
         return ChainEvent.ENDS_HIDDEN
@@ -133,7 +124,7 @@ def chain_event(chain: EchoChain, reading: SideReading) -> int:
     return ChainEvent.ENDS_AT_EDGE if reading.range > last_range(chain) else ChainEvent.ENDS_HIDDEN
 
 
-def next_chain(chain: EchoChain, reading: SideReading, event: int) -> EchoChain:
+def next_chain(chain: EchoChain, reading: Measurement, event: int) -> EchoChain:
     """Return the chain after a reading: with one more echo, or the one that begins."""
     if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
         return EchoChain()
@@ -153,13 +144,13 @@ def last_range(chain: EchoChain) -> float:
     return chain.echoes[max(chain.used - 1, 0)].range
 
 
-def is_fit_due(chain: EchoChain, reading: SideReading) -> bool:
+def is_fit_due(chain: EchoChain, reading: Measurement) -> bool:
     """Return whether a chain with the echo of ``reading`` is to be fitted."""
     is_echo = reading.status == ReadingStatus.ECHO
     return is_echo and chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES
 
 
-def fit_chain(update: ChainUpdate, reading: SideReading, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
+def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
     """Return landmarks and chain after a fit; of a chain of two bodies the first is mapped, the second goes on."""
     chain = update.chain
     last = chain.used - 1
@@ -230,7 +221,7 @@ def range_behind(segment: Landmark, echo: ChainEcho) -> float:
 
 
 def _fit_part(
-    chain: EchoChain, first: int, last: int, reading: SideReading, begins: ChainEnd, ends: ChainEnd
+    chain: EchoChain, first: int, last: int, reading: Measurement, begins: ChainEnd, ends: ChainEnd
 ) -> SegmentFit:
     """Return the fit of a part of a chain whose ends are edges or not."""
     sensor = reading.sensor

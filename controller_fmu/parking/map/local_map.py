@@ -7,7 +7,6 @@ from controller_fmu.parking.map.chain_update import (
     MIN_ECHOES,
     ChainEvent,
     ChainUpdate,
-    SideReading,
     chain_event,
     fit_chain,
     is_fit_due,
@@ -32,11 +31,10 @@ from controller_fmu.parking.measurement.sensor import (
     FRONT_LEFT_SIDE,
     FRONT_RIGHT_SIDE,
     MAX_SENSORS,
+    Measurement,
     ReadingStatus,
     SensorPose,
-    range_variance,
-    reading_status,
-    sensor_pose,
+    measurement_of,
 )
 from controller_fmu.parking.measurement.silent_sensor import MissedEchoes, count_missed_echo, is_credible_miss
 from modelkit.car import CarUltrasonic
@@ -46,18 +44,6 @@ CONFIRMING_RANGE = 0.1
 """An echo this near [m] to the predicted one confirms a landmark: the expected echoes that it missed were dropouts."""
 FIRST_SIDE = FRONT_LEFT_SIDE
 SIDE_SENSORS = MAX_SENSORS - FIRST_SIDE
-
-
-class Measurement(NamedTuple):
-    """One reading: which sensor (0 to 11), where it was, what the reading means, its range [m] and variance [m2]."""
-
-    number: int
-    sensor: SensorPose
-    status: int
-    range: float
-    variance: float
-    min_range: float
-    """Blind zone of the sensor [m]."""
 
 
 class LandmarkMap(NamedTuple):
@@ -86,11 +72,8 @@ def update_map(
         if local_map.landmarks[number].type != LandmarkType.NONE:
             after = predict_landmark(local_map.landmarks[number], pose, driven, params)
             local_map = with_landmark(local_map, number, after)
-    variance = range_variance(params.range_noise, sensors.resolution)
     for number in range(MAX_SENSORS):
-        sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, pose)
-        status = reading_status(readings[number], sensors)
-        measurement = Measurement(number, sensor, status, readings[number], variance, sensors.min_range)
+        measurement = measurement_of(number, readings[number], pose, sensors, params.range_noise)
         local_map = use_measurement(local_map, measurement, params)
     return local_map
 
@@ -127,8 +110,7 @@ def _with_chain(local_map: LandmarkMap, number: int, chain: EchoChain) -> Landma
 def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map after a reading of a sensor on a flank, which passes sides: chains of echoes."""
     at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
-    reading = SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance)
-    oblique = update_oblique_sides(local_map.boundaries[at], reading)
+    oblique = update_oblique_sides(local_map.boundaries[at], measurement)
     local_map = local_map._replace(
         boundaries=local_map.boundaries[:at] + (oblique.boundaries,) + local_map.boundaries[at + 1 :]
     )
@@ -136,17 +118,17 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         index = index_of_side(local_map.landmarks, oblique.passed[boundary], params)
         if index >= 0:
             local_map = with_landmark(local_map, index, oblique.passed[boundary])
-    event = chain_event(local_map.chains[at], reading)
+    event = chain_event(local_map.chains[at], measurement)
     ends = not oblique.is_oblique and event != ChainEvent.CONTINUES
     if ends and local_map.chains[at].used >= MIN_ECHOES:
         ended = ChainUpdate(local_map.landmarks, local_map.chains[at])
-        ended = fit_chain(ended, reading, event == ChainEvent.ENDS_AT_EDGE, params)
+        ended = fit_chain(ended, measurement, event == ChainEvent.ENDS_AT_EDGE, params)
         local_map = local_map._replace(landmarks=ended.landmarks)
-    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], reading, event)
+    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], measurement, event)
     local_map = _with_chain(local_map, at, chain)
-    if is_fit_due(local_map.chains[at], reading):
+    if is_fit_due(local_map.chains[at], measurement):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
-        update = fit_chain(update, reading, False, params)
+        update = fit_chain(update, measurement, False, params)
         local_map = local_map._replace(landmarks=update.landmarks)
         local_map = _with_chain(local_map, at, update.chain)
     return local_map
@@ -196,7 +178,7 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             after = landmark
             if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
                 after = landmark._replace(contradictions=0)
-            if is_contradicted(landmark, sensor, measurement.range, measurement.min_range, measurement.variance):
+            if is_contradicted(landmark, measurement):
                 is_missed = is_missed or (not is_echo and is_permanent(landmark))
                 if is_credible:
                     after = contradict(landmark, predict_range(sensor, landmark), params)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
-from controller_fmu.parking.map.chain_update import SideReading, is_better, same_side
+from controller_fmu.parking.map.chain_update import is_better, same_side
 from controller_fmu.parking.map.echo_chain import MAX_EDGE_RANGE
 from controller_fmu.parking.map.landmark import (
     Landmark,
@@ -25,7 +25,7 @@ from controller_fmu.parking.map.landmark import (
     with_offset_variance,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
+from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
 from modelkit.geometry import NO_HIT, Point
 from modelkit.maths import PI, wrap_angle
 
@@ -93,7 +93,7 @@ class ObliqueUpdate(NamedTuple):
     """The echo is of such a side: of no foot or corner."""
 
 
-def update_oblique_sides(boundaries: ConeBoundaries, reading: SideReading) -> ObliqueUpdate:
+def update_oblique_sides(boundaries: ConeBoundaries, reading: Measurement) -> ObliqueUpdate:
     """Return the runs after a reading of a sensor on a flank, and the sides that are to be mapped: those passed."""
     update = ObliqueUpdate(boundaries)
     for boundary in range(CONE_BOUNDARIES):
@@ -133,7 +133,7 @@ def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
     return Point(sensor.x + measured * ux, sensor.y + measured * uy)
 
 
-def is_over(run: BoundaryRun, reading: SideReading, point: Point) -> bool:
+def is_over(run: BoundaryRun, reading: Measurement, point: Point) -> bool:
     """Return whether a run has ended with a reading whose boundary point is ``point``."""
     if run.sums.n == 0:
         return False
@@ -151,7 +151,7 @@ def is_over(run: BoundaryRun, reading: SideReading, point: Point) -> bool:
     return off * off > LINE_SIGMA * LINE_SIGMA * (reading.variance + known)
 
 
-def next_run(run: BoundaryRun, reading: SideReading, point: Point, over: bool) -> BoundaryRun:
+def next_run(run: BoundaryRun, reading: Measurement, point: Point, over: bool) -> BoundaryRun:
     """Return a run after a reading, or the one that begins after it is ``over``."""
     if reading.status != ReadingStatus.ECHO:
         return BoundaryRun(range=NO_HIT) if over or run.sums.n == 0 else run._replace(lost=run.lost + 1)

@@ -19,7 +19,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     predict_range_to_point,
     predict_range_to_segment,
 )
-from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
+from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, in_field_of_view
 
 SURFACE_DEVIATION = 0.02
 """Standard deviation [m] of a vehicle's side from a straight line: bumpers, mirrors, wheels."""
@@ -71,15 +71,13 @@ def _is_all_in_view(landmark: Landmark, sensor: SensorPose) -> bool:
     return in_field_of_view(sensor, a.x, a.y) and in_field_of_view(sensor, b.x, b.y)
 
 
-def is_contradicted(
-    landmark: Landmark, sensor: SensorPose, free_range: float, min_range: float, variance: float
-) -> bool:
-    """Return whether a landmark had to return an echo, but the first one is beyond ``free_range`` [m].
+def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
+    """Return whether a landmark had to return an echo, but the first one is farther.
 
-    Only where the predicted echo lies well inside the cone, beyond the blind zone (``min_range`` [m]) and outside the
-    gate (``variance`` [m2] of an echo); of a segment only the side, as corners may lie outside a narrower cone, or all
-    of it if it is short.
+    Only where the predicted echo lies well inside the cone, beyond the blind zone and outside the gate; of a segment
+    only the side, as corners may lie outside a narrower cone, or all of it if it is short.
     """
+    sensor = measurement.sensor
     predicted = predict_range(sensor, landmark)
     if predicted.origin == EchoOrigin.OUT_OF_VIEW or predicted.origin == EchoOrigin.CONE_EDGE:
         return False
@@ -90,11 +88,11 @@ def is_contradicted(
             return False
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION
-    sigma = math.sqrt(offset_variance(landmark, along) + variance + roughness)
+    sigma = math.sqrt(offset_variance(landmark, along) + measurement.variance + roughness)
     narrow = sensor._replace(cone_sin=WELL_IN_VIEW * sensor.cone_sin)
     surely_in_view = in_field_of_view(narrow, predicted.x, predicted.y)
-    beyond_blind_zone = predicted.distance > min_range + 3.0 * sigma
-    return surely_in_view and beyond_blind_zone and predicted.distance < free_range - 3.0 * sigma
+    beyond_blind_zone = predicted.distance > measurement.min_range + 3.0 * sigma
+    return surely_in_view and beyond_blind_zone and predicted.distance < measurement.range - 3.0 * sigma
 
 
 def contradict(landmark: Landmark, predicted: PredictedRange, params: MappingParams) -> Landmark:

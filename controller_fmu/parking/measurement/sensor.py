@@ -47,6 +47,19 @@ class ReadingStatus(IntEnum):
     """Not a number, or nearer than a sensor ever reports."""
 
 
+class Measurement(NamedTuple):
+    """A reading: where its sensor was, its ``ReadingStatus``, range [m] and variance [m2]."""
+
+    sensor: SensorPose
+    status: int
+    range: float
+    variance: float
+    number: int = 0
+    """Of the sensor, 0 to 11."""
+    min_range: float = 0.0
+    """Blind zone of the sensor [m]."""
+
+
 def is_on_one_side(number: int, other: int) -> bool:
     """Return whether two sensors are on the same bumper (0 to 3 in front, 4 to 7 behind) or flank (8, 9 and 10, 11)."""
     return number // 4 == other // 4 and (number < FRONT_LEFT_SIDE or number // 2 == other // 2)
@@ -88,3 +101,11 @@ def in_field_of_view(sensor: SensorPose, x: float, y: float) -> bool:
 def range_variance(noise: float, resolution: float) -> float:
     """Return the variance [m2] of an echo: Gaussian ``noise`` [m] plus rounding to ``resolution`` [m] (uniform)."""
     return noise * noise + resolution * resolution / 12.0
+
+
+def measurement_of(number: int, reading: float, vehicle: Pose, sensors: CarUltrasonic, noise: float) -> Measurement:
+    """Return what the ``reading`` [m] of a sensor on a vehicle at pose ``vehicle`` means; ``noise`` [m] of an echo."""
+    at = min(max(number, 0), MAX_SENSORS - 1)
+    sensor = sensor_pose(sensors.mounts[at], sensors.half_angle, vehicle)
+    variance = range_variance(noise, sensors.resolution)
+    return Measurement(sensor, reading_status(reading, sensors), reading, variance, number, sensors.min_range)

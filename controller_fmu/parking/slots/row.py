@@ -150,19 +150,14 @@ def corner_of(landmark: Landmark, is_start: bool, row: SlotRow, params: MappingP
     return Point(at.x, row.side * at.y)
 
 
-def _hidden_front(
-    landmarks: tuple[Landmark, ...], landmark: Landmark, row: SlotRow, params: MappingParams
-) -> RowMember:
-    """Return the front behind a landmark that stands out of it and hides it, such as a hitch: between its corners."""
-    hitch = corner_of(landmark, True, row, params)
+def _hidden_front(corners: tuple[Point, ...], hitch: Point) -> RowMember:
+    """Return the front behind a point that stands out of it and hides it, such as a hitch: between its corners."""
     first = Point(-NO_MEMBER, 0.0)
     last = Point(NO_MEMBER, 0.0)
-    for other in landmarks:
-        for is_start in (True, False):
-            corner = corner_of(other, is_start, row, params)
-            if UNEVEN_SIGMA < corner.y - hitch.y < ROW_DEPTH:
-                first = corner if first.x < corner.x < hitch.x else first
-                last = corner if hitch.x < corner.x < last.x else last
+    for corner in corners:
+        if UNEVEN_SIGMA < corner.y - hitch.y < ROW_DEPTH:
+            first = corner if first.x < corner.x < hitch.x else first
+            last = corner if hitch.x < corner.x < last.x else last
     if hitch.y < 0.0 or hitch.x - first.x > MAX_HIDDEN or last.x - hitch.x > MAX_HIDDEN:
         return RowMember()
     return RowMember(first.x, last.x, 0.5 * (first.y + last.y), True, True, first.y, last.y)
@@ -171,11 +166,14 @@ def _hidden_front(
 def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
     """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
     row = SlotRow(frame, side)
+    corners: tuple[Point, ...] = tuple(
+        corner_of(landmarks[number // 2], number % 2 == 0, row, params) for number in range(2 * MAX_LANDMARKS)
+    )
     sides: tuple[RowMember, ...] = tuple(
-        _hidden_front(landmarks, landmark, row, params)
-        if landmark.type == LandmarkType.POINT
-        else side_as_member(landmark, frame, side, params)
-        for landmark in landmarks
+        _hidden_front(corners, corners[2 * number])
+        if landmarks[number].type == LandmarkType.POINT
+        else side_as_member(landmarks[number], frame, side, params)
+        for number in range(MAX_LANDMARKS)
     )
     nearest = NO_MEMBER
     for member in sides:

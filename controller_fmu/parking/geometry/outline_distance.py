@@ -43,16 +43,11 @@ def edge_distance_squared(ax: float, ay: float, bx: float, by: float, car: Vehic
     return _point_distance(bx, by, half_length, half_width, best)
 
 
-def overlap_depth(start: Point, end: Point, car: VehicleOutline) -> float:
-    """Return how far [m] a segment that cuts a car about the origin has to move, ahead, back or aside, to leave it."""
+def overlap_ahead(start: Point, end: Point, car: VehicleOutline) -> float:
+    """Return how far [m] ahead of its centre a segment cuts a car about the origin: the middle of what is inside."""
     low = Point(-car.half_length, -car.half_width)
     part = clip_to_box(start, end, low, Point(car.half_length, car.half_width))
-    x0 = start.x + part.enter * (end.x - start.x)
-    y0 = start.y + part.enter * (end.y - start.y)
-    x1 = start.x + part.leave * (end.x - start.x)
-    y1 = start.y + part.leave * (end.y - start.y)
-    along = car.half_length + min(max(x0, x1), -min(x0, x1))
-    return min(along, car.half_width + min(max(y0, y1), -min(y0, y1)))
+    return start.x + 0.5 * (part.enter + part.leave) * (end.x - start.x)
 
 
 def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:

@@ -14,7 +14,7 @@ from controller_fmu.parking.geometry.outline import (
     outline_frame,
     pose_along_arc,
 )
-from controller_fmu.parking.geometry.outline_distance import edge_distance_squared, overlap_depth
+from controller_fmu.parking.geometry.outline_distance import edge_distance_squared, overlap_ahead
 from controller_fmu.parking.map.landmark import Landmark, end_point, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
@@ -174,14 +174,20 @@ def free_towards(
 ) -> float:
     """Return how far [m] the outline goes before it is nearer than ``kept`` [m] to the line a-b, as that approaches.
 
-    The vehicle may leave what it stands beside, but come no nearer: what it may at each sample it must not at all.
+    The vehicle may leave what it stands beside, but come no nearer: what it may at each sample it must not at all. What
+    overlaps it is left by driving away from the half of the vehicle that it is in.
     """
     here = line_distance(a, b, sweep.here, sweep.outline)
+    if here <= 0.0:
+        start = in_outline(a, sweep.here, sweep.outline)
+        ahead = overlap_ahead(start, in_outline(b, sweep.here, sweep.outline), sweep.outline)
+        return 0.0 if motion.direction * ahead > 0.0 else NO_LIMIT
     if here - sweep.reach >= kept + closing_speed * (motion.delay + MAX_RATE_TIME):
         return NO_LIMIT
     least = kept
     if closing_speed <= 0.0:
-        least = min(kept, min(here, line_distance(a, b, sweep.stand, sweep.outline) - MIN_APPROACH))
+        stood = max(line_distance(a, b, sweep.stand, sweep.outline), 2.0 * MIN_APPROACH)
+        least = min(kept, min(here, stood - MIN_APPROACH))
     for step in range(1, MAX_POSES + 1):
         travelled = sweep.horizon * step / MAX_POSES
         time = motion.delay + min(MAX_RATE_TIME, 2.0 * travelled / max(motion.speed, MIN_APPROACH))
@@ -208,18 +214,17 @@ def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -
 
 
 def line_distance(a: Point, b: Point, frame: OutlineFrame, outline: VehicleOutline) -> float:
-    """Return the distance [m] from the outline of a vehicle at ``frame`` to the segment a-b, at most ``NO_LIMIT``.
+    """Return the distance [m] from the outline of a vehicle at ``frame`` to the segment a-b, at most ``NO_LIMIT``."""
+    start = in_outline(a, frame, outline)
+    end = in_outline(b, frame, outline)
+    return math.sqrt(edge_distance_squared(start.x, start.y, end.x, end.y, outline, NO_LIMIT * NO_LIMIT))
 
-    Inside the outline it is negative: how far the segment would have to move to leave it.
-    """
-    cos = frame.cos
-    sin = frame.sin
-    x = frame.x + outline.centre_ahead * cos
-    y = frame.y + outline.centre_ahead * sin
-    start = Point((a.x - x) * cos + (a.y - y) * sin, (a.y - y) * cos - (a.x - x) * sin)
-    end = Point((b.x - x) * cos + (b.y - y) * sin, (b.y - y) * cos - (b.x - x) * sin)
-    square = edge_distance_squared(start.x, start.y, end.x, end.y, outline, NO_LIMIT * NO_LIMIT)
-    return math.sqrt(square) if square > 0.0 else -overlap_depth(start, end, outline)
+
+def in_outline(point: Point, frame: OutlineFrame, outline: VehicleOutline) -> Point:
+    """Return a point [m] relative to the centre of the outline of a vehicle at ``frame``: x ahead, y to the left."""
+    dx = point.x - (frame.x + outline.centre_ahead * frame.cos)
+    dy = point.y - (frame.y + outline.centre_ahead * frame.sin)
+    return Point(dx * frame.cos + dy * frame.sin, dy * frame.cos - dx * frame.sin)
 
 
 def stopping_distance(speed: float, delay: float, deceleration: float) -> float:

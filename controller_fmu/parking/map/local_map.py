@@ -28,6 +28,7 @@ from controller_fmu.parking.map.visibility import (
 )
 from controller_fmu.parking.measurement.predicted_range import PredictedRange
 from controller_fmu.parking.measurement.sensor import (
+    BUMPER_SENSORS,
     FRONT_LEFT_SIDE,
     FRONT_RIGHT_SIDE,
     MAX_SENSORS,
@@ -42,8 +43,7 @@ from modelkit.vocabulary import Pose
 
 CONFIRMING_RANGE = 0.1
 """An echo this near [m] to the predicted one confirms a landmark: the expected echoes that it missed were dropouts."""
-FIRST_SIDE = FRONT_LEFT_SIDE
-SIDE_SENSORS = MAX_SENSORS - FIRST_SIDE
+SIDE_SENSORS = MAX_SENSORS - BUMPER_SENSORS
 
 
 class LandmarkMap(NamedTuple):
@@ -57,8 +57,6 @@ class LandmarkMap(NamedTuple):
     free_space: FreeSpace = FreeSpace()
     missed: MissedEchoes = MissedEchoes()
     pose: Pose = Pose()
-    distance: float = 0.0
-    """Driven since the map began [m]."""
     begun: bool = False
 
 
@@ -67,7 +65,7 @@ def update_map(
 ) -> LandmarkMap:
     """Return the map after one measurement cycle: ``readings`` [m] of all sensors of a vehicle at ``pose``."""
     driven = planar_distance(pose.x, pose.y, local_map.pose.x, local_map.pose.y) if local_map.begun else 0.0
-    local_map = local_map._replace(pose=pose, distance=local_map.distance + driven, begun=True)
+    local_map = local_map._replace(pose=pose, begun=True)
     for number in range(MAX_LANDMARKS):
         if local_map.landmarks[number].type != LandmarkType.NONE:
             after = predict_landmark(local_map.landmarks[number], pose, driven, params)
@@ -81,7 +79,7 @@ def update_map(
 def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map after one reading."""
     status = measurement.status
-    if measurement.number >= FIRST_SIDE:
+    if measurement.number >= BUMPER_SENSORS:
         local_map = _use_side(local_map, measurement, params)
     if status == ReadingStatus.ECHO or status == ReadingStatus.NO_ECHO:
         local_map = contradict_nearer(local_map, measurement, params)
@@ -109,7 +107,7 @@ def _with_chain(local_map: LandmarkMap, number: int, chain: EchoChain) -> Landma
 
 def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map after a reading of a sensor on a flank, which passes sides: chains of echoes."""
-    at = min(max(measurement.number - FIRST_SIDE, 0), SIDE_SENSORS - 1)
+    at = min(max(measurement.number - BUMPER_SENSORS, 0), SIDE_SENSORS - 1)
     oblique = update_oblique_sides(local_map.boundaries[at], measurement)
     local_map = local_map._replace(
         boundaries=local_map.boundaries[:at] + (oblique.boundaries,) + local_map.boundaries[at + 1 :]

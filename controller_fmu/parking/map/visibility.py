@@ -64,13 +64,6 @@ def with_open_ends_extended(landmark: Landmark) -> Landmark:
     return landmark._replace(start=start, end=end)
 
 
-def _is_all_in_view(landmark: Landmark, sensor: SensorPose) -> bool:
-    """Return whether both ends of a segment lie in a sensor's cone."""
-    a = start_point(landmark)
-    b = end_point(landmark)
-    return in_field_of_view(sensor, a.x, a.y) and in_field_of_view(sensor, b.x, b.y)
-
-
 def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
     """Return whether a landmark had to return an echo, but the first one is farther.
 
@@ -82,9 +75,11 @@ def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
     if predicted.origin == EchoOrigin.OUT_OF_VIEW or predicted.origin == EchoOrigin.CONE_EDGE:
         return False
     if landmark.type == LandmarkType.SEGMENT:
+        a = start_point(landmark)
+        b = end_point(landmark)
+        is_all_in_view = in_field_of_view(sensor, a.x, a.y) and in_field_of_view(sensor, b.x, b.y)
         is_short = length_of(landmark) < BODY_BETWEEN
-        decides = _is_all_in_view(landmark, sensor) if is_short else predicted.origin == EchoOrigin.INTERIOR
-        if not decides:
+        if not (is_all_in_view if is_short else predicted.origin == EchoOrigin.INTERIOR):
             return False
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION

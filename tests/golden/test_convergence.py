@@ -27,6 +27,12 @@ from orchestrator.simulation.cosim.fmu_files import can_compile
 from tests.golden.test_golden import kept
 
 MAX_EXCEPTION_SHARE = 0.05
+MAX_SHARE_OF = {"preview": 0.15}
+"""Scenario -> the share of its random runs that may end differently, where it is larger.
+
+After 0.96 km it reaches the end of the road one communication step later and 5.1 cm further on; none differs by more
+than 7.0 cm.
+"""
 EXCEPTIONS = {
     "apa-pull-out-right": "after move 7 the way out counts as free, or one more shuffle is planned",
     "preview-camera": "the camera frame in which the end of a lap of 194 s is reached",
@@ -95,4 +101,5 @@ def test_a_scenario_ends_alike_with_half_the_body_step(name: str) -> None:
 @pytest.mark.parametrize("name", RANDOM_BASES)
 def test_random_runs_end_alike_with_half_the_body_step(name: str, tmp_path: Path) -> None:
     runs = random_runs(name, tmp_path)
-    assert len(runs.different) <= MAX_EXCEPTION_SHARE * RANDOM_RUNS, (len(runs.different), runs.different[:10])
+    share = MAX_SHARE_OF.get(name, MAX_EXCEPTION_SHARE)
+    assert len(runs.different) <= share * RANDOM_RUNS, (len(runs.different), runs.different[:10])

@@ -114,18 +114,27 @@ def test_type_follows_from_what_was_seen_in_full() -> None:
     assert log_likelihood_ratio(row_of((1.8, 1.7, 1.9), True)) < -2.3
     assert log_likelihood_ratio(row_of((4.4, 4.6), True)) > 2.3
     assert log_likelihood_ratio(row_of((1.5, 1.6), False)) == 0.0
-    assert log_likelihood_ratio(row_of((3.9, 0.6), False)) > 2.0
+    assert log_likelihood_ratio(row_of((3.9, 0.6), False)) > 1.0
     assert log_likelihood_ratio(row_of((20.0, 1.0), False)) == 0.0
 
 
-@pytest.mark.parametrize(("front", "is_decided"), [(1.4, True), (2.8, False)])
-def test_two_cars_seen_as_one_from_afar_leave_the_type_open(front: float, is_decided: bool) -> None:
-    """A side of 4.6 m is one car along the road, or, passed at 2 m, two cars across it whose gap was not resolved."""
-    seen = RowMember(-4.6, 0.0, front, True, True)
-    begun = RowMember(4.1, 5.0, front, True, False)
-    none = (RowMember(),) * 6
-    candidate = SlotCandidate(row=SlotRow(members=(begun, seen, *none), used=2), behind=seen, ahead=begun)
-    assert (log_likelihood_ratio(candidate) > LOG_TEN) == is_decided
+@pytest.mark.parametrize(("evidence", "is_parallel"), [(-1.5, True), (0.0, True), (3.0, False)])
+def test_a_gap_in_its_echoes_makes_a_side_two_cars(evidence: float, is_parallel: bool) -> None:
+    """A side of 4.6 m is one car along the road, or two cars across it whose echoes rise over the gap between them."""
+    seen = RowMember(-4.6, 0.0, 2.4, True, True, gap_evidence=evidence)
+    begun = RowMember(4.1, 5.0, 2.4, True, False)
+    row = SlotRow(members=(begun, seen, *(RowMember(),) * 6), used=2)
+    ratio = log_likelihood_ratio(SlotCandidate(row=row, behind=seen, ahead=begun))
+    assert (ratio > 0.0) == is_parallel
+    assert abs(ratio) > 1.0
+
+
+def test_a_gap_in_the_first_3_m_of_a_side_is_of_cars_across_the_road() -> None:
+    """One along the road had to be longer before the next could begin, though the side goes on."""
+    rows = [SlotRow(members=(RowMember(0.0, 2.9, 2.0, True, False, gap_evidence=e),), used=1) for e in (0.0, 3.0)]
+    none, gap = (log_likelihood_ratio(SlotCandidate(row=row._replace(members=row.members * 8))) for row in rows)
+    assert none == pytest.approx(0.0, abs=0.5)
+    assert gap < -1.0
 
 
 def test_cars_whose_gaps_are_not_observed_count_as_one_side() -> None:

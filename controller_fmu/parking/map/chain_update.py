@@ -62,10 +62,16 @@ HUMP_HALF_WIDTH = 4
 """Echoes on either side of a hump's middle: the ranges over a gap of 0.7 m, at 2 m/s."""
 MIN_PART = HUMP_HALF_WIDTH + 1
 """Echoes of either part of a chain that is split."""
+MIN_HUMP = MIN_PART + HUMP_HALF_WIDTH
+"""Echoes before and after a hump's middle."""
 SPLIT_CHI_SQUARE = 16.3
 """Two segments must explain the echoes better by this: three unknowns more, chi square at 0.1 %."""
 SPLIT_UNKNOWNS = 7
 """Two lines of two unknowns, and three ends."""
+GAP_WIDTHS = (0.4, 0.6, 0.8, 1.0, 1.2)
+"""Between cars in a row [m], each as likely as the others."""
+MAX_GAP_CHI_SQUARE = 9.2
+"""A gap of which echoes show no more than this speaks by its absence for one body, 100 : 1 at most."""
 KNOWN_SIGMA = 0.25
 """An edge is known once its standard deviation [m] is below this: half of the widest gap inside a row."""
 POINT_LENGTH = 0.15
@@ -159,20 +165,50 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     begin = first_of_body(chain, reading.variance)
     whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
-    if at >= MIN_PART and at + MIN_PART <= chain.used:
+    gain = 0.0
+    if at > 0:
         parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
         first = _fit_part(chain, 0, at - 1, reading, begins, parts)
         second = _fit_part(chain, at, last, reading, parts, ends)
         gain = split_gain(chain, at, (whole.landmark, first.landmark, second.landmark), reading.variance)
         if gain > SPLIT_CHI_SQUARE:
+            first = _with_gap_evidence(first, chain, 0, at - 1, 0.0, reading.variance)
             update = _put(update, first, (chain.begins_at_edge, True), at, params)
             update = update._replace(chain=without_echoes_before(chain, at))
+            second = _with_gap_evidence(second, chain, at, last, 0.0, reading.variance)
             return _put(update, second, (True, ends_at_edge), update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
         chain, whole.landmark, reading.sensor, reading.variance
     ):
         return update._replace(chain=update.chain._replace(fitted=update.chain.used))
+    whole = _with_gap_evidence(whole, chain, 0, last, gain, reading.variance)
     return _put(update, whole, (chain.begins_at_edge, ends_at_edge), update.chain.used, params)
+
+
+def _with_gap_evidence(
+    fit: SegmentFit, chain: EchoChain, first: int, last: int, gain: float, variance: float
+) -> SegmentFit:
+    """Return the fit of a part of a chain with the log-likelihood ratio of a gap in it, a split of which gains so much.
+
+    Over a gap of width w ranges at the distance d rise by t2 / 2d, t from the nearer corner: of echoes every s metres
+    that is a chi square of w5 / (320 s d2 variance). The root of ``gain`` is the amplitude that was found of it, at one
+    of the places where a gap may be. The ``variance`` [m2] of an echo is at least that of the residuals.
+    """
+    segment = fit.landmark
+    total = 0.0
+    for number in range(MAX_ECHOES):
+        if first <= number <= last:
+            total += chi_square_of(segment, chain.echoes[number], variance)
+    distance = chain.echoes[(first + last) // 2].range
+    spacing = max(_step(chain.echoes[first], chain.echoes[last]) / max(last - first, 1), chain.spacing)
+    noise = 320.0 * spacing * distance * distance * variance * max(1.0, total / (last - first + 1))
+    ratio = 0.0
+    for width in GAP_WIDTHS:
+        expected = min(width * width * width * width * width / noise, MAX_GAP_CHI_SQUARE)
+        found = math.exp(math.sqrt(max(gain, 0.0) * expected))
+        places = max(length_of(segment) / width, 1.0)
+        ratio += math.exp(-0.5 * expected) * (1.0 + (found - 1.0) / places)
+    return fit._replace(landmark=segment._replace(gap_evidence=math.log(ratio / len(GAP_WIDTHS))))
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:
@@ -296,7 +332,7 @@ def parting_echo(chain: EchoChain, segment: Landmark) -> int:
     best = 0.0
     at = 0
     for number in range(MAX_ECHOES):
-        if MIN_PART <= number <= chain.used - MIN_PART:
+        if MIN_HUMP <= number <= chain.used - 1 - MIN_HUMP:
             total = 0.0
             for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
                 total += range_behind(segment, chain.echoes[number + near])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from modelkit.geometry import Point
 
-MAX_LANDMARKS = 64
+MAX_LANDMARKS = 60
 """Capacity of the map."""
 
 
@@ -47,6 +47,8 @@ class Landmark(NamedTuple):
     """Updates since its initialisation."""
     contradictions: int = 0
     """Expected echoes that did not come, in a row."""
+    gap_evidence: float = 0.0
+    """ln P(its echoes | a gap between two cars in it) - ln P(its echoes | one body)."""
 
 
 def segment_point(landmark: Landmark, along: float) -> Point:

@@ -40,11 +40,8 @@ CAR_LENGTH_SIGMA = 0.5
 CAR_WIDTH = 1.8
 CAR_WIDTH_SIGMA = 0.2
 """Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
-RESOLVED_FRONT = 2.0
-MERGING_PENALTY = 0.7
-"""Beyond this distance [m] of a front from the vehicle's middle, 1.2 m from its flank, the echoes of two cars in a row
-tell them apart in one of two passes only (chi square 15 to 24 at 2.0 and 1.5 m); log of two. Nearer, gaps of less than
-0.5 m are not observed: one in ten."""
+MERGING_PENALTY = 1.4
+"""Log of four: of the gaps between cars in a row the map tells three of four apart."""
 MAX_MERGED = 4
 """So many cars in a row at most seem one side."""
 MERGED_LENGTH = 1.0
@@ -241,31 +238,33 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
         if number < candidate.row.used:
             member = candidate.row.members[number]
             length = member.end - member.start
-            is_between_gaps = 0 < number < candidate.row.used - 1
-            is_complete = (member.start_known and member.end_known) or is_between_gaps
-            if not is_complete:
-                length -= MERGED_LENGTH
+            is_started = member.start_known or number + 1 < candidate.row.used
+            is_complete = is_started and (member.end_known or number > 0)
             if length < 2.0 * MAX_CAR:
-                penalty = MERGING_PENALTY if member.front > RESOLVED_FRONT else LOG_TEN
-                ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, penalty)
-                ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, penalty)
+                evidence = member.gap_evidence
+                ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, evidence)
+                ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, evidence)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * LOG_TEN
     return ratio
 
 
-def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: float, penalty: float) -> float:
+def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: float, evidence: float) -> float:
     """Return the log-likelihood of a side of ``length`` [m] where cars show one of ``car`` [m], one or some that merge.
 
-    Cars in a row stand as far apart as bays are wider than cars; each gap not observed costs ``penalty``.
+    Cars in a row stand as far apart as bays are wider than cars. The ``evidence`` for gaps, a log-likelihood ratio,
+    counts once: those of a row are alike, observable or not. Of an incomplete side the last car has begun.
     """
     gap_variance = BAY_SIGMA * BAY_SIGMA - CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA
     best = -2.0 * LOG_TEN
     for gaps in range(MAX_MERGED):
         mean = car + gaps * (car + BAY_WIDTH - CAR_WIDTH)
-        variance = sigma * sigma + gaps * (sigma * sigma + gap_variance)
-        likelihood = length_log_likelihood(length, is_complete, mean, math.sqrt(variance))
-        best = max(best, likelihood - gaps * penalty)
+        deviation = math.sqrt(sigma * sigma + gaps * (sigma * sigma + gap_variance))
+        likelihood = length_log_likelihood(length, True, mean, deviation)
+        if not is_complete:
+            likelihood = length_log_likelihood(length - MERGED_LENGTH, False, mean, deviation)
+            likelihood += length_log_likelihood(-length, False, car - mean, deviation)
+        best = max(best, likelihood + (evidence if gaps > 0 else 0.0) - gaps * MERGING_PENALTY)
     return best
 
 

@@ -63,6 +63,8 @@ class RowMember(NamedTuple):
     """Length [m] of the side that begins at its start, and of the one that ends at its end, as sides are joined; 0:
     not seen in full."""
     end_length: float = 0.0
+    gap_evidence: float = 0.0
+    """Log-likelihood ratio of a gap between two cars in it, by its echoes."""
 
 
 class SlotRow(NamedTuple):
@@ -137,6 +139,7 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
         math.sqrt(landmark.end_variance if forward else landmark.start_variance),
         length,
         length,
+        landmark.gap_evidence,
     )
 
 
@@ -213,6 +216,7 @@ def _with_next(row: SlotRow, member: RowMember) -> SlotRow:
             last.end_sigma,
             first.start_length,
             last.end_length,
+            longer.gap_evidence,
         )
         return with_member(row, at, joined)
     return with_member(row, row.used, member)._replace(used=row.used + 1) if row.used < MAX_MEMBERS else row

@@ -175,8 +175,7 @@ def continue_plan(
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
-    relaxes = memory.strategy == Strategy.SLOT and not plan.is_relaxed
-    if status == PlanningStatus.GOAL_BLOCKED and relaxes:
+    if status == PlanningStatus.GOAL_BLOCKED and memory.strategy == Strategy.SLOT and not plan.is_relaxed:
         return memory._replace(plan=memory.plan._replace(is_relaxed=True, steps=0, plans=plan.plans - 1))
     is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED)
     is_blocked = is_blocked or memory.perception.remembered[-1].is_present
@@ -223,8 +222,7 @@ def correct_slot_by_map(
     search: SearchProgress, landmarks: tuple[Landmark, ...], outline: VehicleOutline, mapping: MappingParams
 ) -> SlotCandidate:
     """Return the slot as it is known now: by all echoes of it, and by what else has been mapped in it."""
-    slot = slot_of_filter(search.slot, search.slot_filter, outline)
-    return correct_slot(slot, landmarks, outline, mapping)
+    return correct_slot(slot_of_filter(search.slot, search.slot_filter, outline), landmarks, outline, mapping)
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
@@ -310,7 +308,12 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     landmarks = memory.perception.local_map.landmarks
-    beside = tuple(_as_unknown(landmark, outline, pose, params) for landmark in landmarks)
+    beside = tuple(
+        away_from_vehicle(
+            Landmark() if is_on_map(item, params.map, params.monitor.unexplained) else item, outline, pose
+        )
+        for item in landmarks
+    )
     echoes = KnownEchoes(memory.perception.remembered, _present_echoes(memory, outline, pose))
     place = VehiclePlace(pose, Pose())
     local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
@@ -325,12 +328,6 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     is_there = is_near(pose, goal, final.position, final.position, final.heading)
     memory = _with_plan(memory, local, goal, inputs, params)
     return memory._replace(plan=memory.plan._replace(is_final=True)) if is_there else memory
-
-
-def _as_unknown(landmark: Landmark, outline: VehicleOutline, pose: Pose, params: ParkingParams) -> Landmark:
-    """Return a landmark as an obstacle that is on no map: clear of the vehicle, none if the given map has it."""
-    unknown = Landmark() if is_on_map(landmark, params.map, params.monitor.unexplained) else landmark
-    return away_from_vehicle(unknown, outline, pose)
 
 
 def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:

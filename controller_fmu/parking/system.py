@@ -97,7 +97,10 @@ def parking_sample(
             memory = forget_what_left(memory, inputs, params)
     if state == ParkingState.SEARCHING:
         memory = search_slots(memory, inputs, params, dt_ns)
-        memory = memory._replace(reason=_search_fault(memory, inputs, params))
+        fault = input_fault(inputs)
+        is_external = inputs.external_slot.kind != SlotKind.NONE
+        reason = fault if fault != Reason.NONE else search_reason(memory.search, is_external, params)
+        memory = memory._replace(reason=reason)
     elif state == ParkingState.CONFIRMING or state == ParkingState.PLANNING:
         memory = continue_plan(work, memory, inputs, params)
         memory = memory._replace(search=memory.search._replace(waited=memory.search.waited + dt_ns))
@@ -107,13 +110,6 @@ def parking_sample(
         memory = _watch(memory, inputs, params, dt_ns)
     conditions = conditions_of(memory, inputs, params)
     return enter_state(memory, next_parking_state(state, conditions), inputs, params)
-
-
-def _search_fault(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
-    """Return why the search must end, ``NONE`` if it goes on."""
-    fault = input_fault(inputs)
-    is_external = inputs.external_slot.kind != SlotKind.NONE
-    return fault if fault != Reason.NONE else search_reason(memory.search, is_external, params)
 
 
 def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:

@@ -247,6 +247,15 @@ def test_what_overlaps_the_vehicle_may_be_left_but_not_driven_into() -> None:
         assert not verdict(0.0, inside, direction=-1.0).is_blocked
 
 
+def test_of_a_side_that_overlaps_the_vehicle_only_the_point_measured_counts() -> None:
+    """The side expected before an outer sensor reached into the vehicle: it stood still with 20 cm to go."""
+    side = EchoSurface(0.0, 1.0, -0.25, 0.25)
+    echo = EchoObstacle(FRONT - 0.05, OUTLINE.half_width + 0.1, is_present=True, surface=side)
+    assert not verdict(0.0, echoes=(echo,) + NOTHING[1:]).is_blocked
+    inside = echo._replace(y=OUTLINE.half_width - 0.05)
+    assert verdict(0.0, echoes=(inside,) + NOTHING[1:]).is_blocked
+
+
 def test_a_track_finds_the_closing_speed() -> None:
     track, distance = ObjectTrack(), 2.0
     for _ in range(12):

@@ -159,13 +159,19 @@ def free_by_echoes(
     unexplained: bool,
     params: MonitorParams,
 ) -> float:
-    """Return the same [m] for the echoes that are ``unexplained``, or not: those may approach by themselves."""
+    """Return the same [m] for the echoes that are ``unexplained``, or not: those may approach by themselves.
+
+    A side that overlaps the vehicle is not there: then only the point that the echo came from counts.
+    """
     free = NO_LIMIT
     for echo in echoes:
         if echo.is_present and echo.is_unexplained == unexplained:
             kept = params.echo_distance if unexplained else params.map_distance
             closing = echo.closing_speed if unexplained else 0.0
-            free = min(free, free_towards(motion, sweep, side_start(echo), side_end(echo), kept, closing))
+            inside = line_distance(side_start(echo), side_end(echo), sweep.here, sweep.outline) <= 0.0
+            start = Point(echo.x, echo.y) if inside else side_start(echo)
+            end = Point(echo.x, echo.y) if inside else side_end(echo)
+            free = min(free, free_towards(motion, sweep, start, end, kept, closing))
     return free
 
 

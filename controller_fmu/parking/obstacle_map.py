@@ -19,7 +19,7 @@ from controller_fmu.parking.geometry.polygons import (
 )
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
 from controller_fmu.parking.measurement.predicted_range import range_to_polygons
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS, SensorPose
 from controller_fmu.parking.monitor.collision_monitor import (
@@ -30,7 +30,7 @@ from controller_fmu.parking.monitor.collision_monitor import (
     side_start,
 )
 from controller_fmu.parking.monitor.params import MonitorParams
-from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 

@@ -12,7 +12,7 @@ from controller_fmu.common.driver_selection import ChosenSide
 from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark, free_index, replace_landmark, segment_between
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
 from controller_fmu.parking.measurement.sensor import (
     BUMPER_SENSORS,
     FRONT_MIDDLE,
@@ -21,7 +21,6 @@ from controller_fmu.parking.measurement.sensor import (
     ReadingStatus,
     reading_status,
 )
-from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH
 from modelkit.car import Car
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose

@@ -116,8 +116,7 @@ def test_echoes_tell_two_cars_from_one_even_where_the_map_does_not_part_them() -
     """With noise of 2.5 cm: the ranges rise by 9 cm over a gap of 1 m, one or two echoes of it."""
     one = [gap_evidence_of(((0.0, 4.4),), 0.025, seed) for seed in range(30)]
     two = [gap_evidence_of(((0.0, 1.7), (2.7, 4.4)), 0.025, seed) for seed in range(30)]
-    assert np.mean(two) > np.mean(one) + 1.0
-    assert np.median(one) < 0.5 < 1.0 < np.median(two)
+    assert np.median(one) < -1.0 < 3.0 < np.median(two)
     assert gap_evidence_of(((0.0, 4.4),), 0.0, 0) < -1.0
 
 

@@ -118,7 +118,7 @@ def test_type_follows_from_what_was_seen_in_full() -> None:
     assert log_likelihood_ratio(row_of((20.0, 1.0), False)) == 0.0
 
 
-@pytest.mark.parametrize(("evidence", "is_parallel"), [(-1.5, True), (0.0, True), (3.0, False)])
+@pytest.mark.parametrize(("evidence", "is_parallel"), [(-1.5, True), (0.0, True), (5.0, False)])
 def test_a_gap_in_its_echoes_makes_a_side_two_cars(evidence: float, is_parallel: bool) -> None:
     """A side of 4.6 m is one car along the road, or two cars across it whose echoes rise over the gap between them."""
     seen = RowMember(-4.6, 0.0, 2.4, True, True, gap_evidence=evidence)
@@ -131,17 +131,17 @@ def test_a_gap_in_its_echoes_makes_a_side_two_cars(evidence: float, is_parallel:
 
 def test_a_gap_in_the_first_3_m_of_a_side_is_of_cars_across_the_road() -> None:
     """One along the road had to be longer before the next could begin, though the side goes on."""
-    rows = [SlotRow(members=(RowMember(0.0, 2.9, 2.0, True, False, gap_evidence=e),), used=1) for e in (0.0, 3.0)]
+    rows = [SlotRow(members=(RowMember(0.0, 2.9, 2.0, True, False, gap_evidence=e),), used=1) for e in (0.0, 5.0)]
     none, gap = (log_likelihood_ratio(SlotCandidate(row=row._replace(members=row.members * 8))) for row in rows)
     assert none == pytest.approx(0.0, abs=0.5)
     assert gap < -1.0
 
 
 def test_cars_whose_gaps_are_not_observed_count_as_one_side() -> None:
-    """Two cars along the road are 9.6 m long, three across it 7 m, each with gaps of 0.8 m."""
+    """Two cars along the road are 9.6 m long, three across it 7 m, each with gaps of 0.8 m; one of these shows."""
     begun = RowMember(6.0, 6.6, 2.8, True, False)
-    for length, is_parallel in ((9.6, True), (7.0, False)):
-        seen = RowMember(-length, 0.0, 2.8, True, True)
+    for length, evidence, is_parallel in ((9.6, 0.0, True), (7.0, 3.0, False)):
+        seen = RowMember(-length, 0.0, 2.8, True, True, gap_evidence=evidence)
         row = SlotRow(members=(begun, seen, *(RowMember(),) * 6), used=2)
         ratio = log_likelihood_ratio(SlotCandidate(row=row, behind=seen, ahead=begun))
         assert (ratio > 0.0) == is_parallel

@@ -35,7 +35,7 @@ from controller_fmu.parking.map.landmark import (
     segment_point,
     start_point,
 )
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import BAY_SIGMA, BAY_WIDTH, CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from controller_fmu.parking.map.segment_fit import (
     ROBUST_SIGMA,
     SURFACE_DEVIATION,
@@ -70,8 +70,8 @@ SPLIT_UNKNOWNS = 7
 """Two lines of two unknowns, and three ends."""
 GAP_WIDTHS = (0.4, 0.6, 0.8, 1.0, 1.2)
 """Between cars in a row [m], each as likely as the others."""
-MAX_GAP_CHI_SQUARE = 9.2
-"""A gap of which echoes show no more than this speaks by its absence for one body, 100 : 1 at most."""
+MAX_GAP_EVIDENCE = 9.2
+"""Log-likelihood ratio beyond which echoes of a hump decide nothing more."""
 KNOWN_SIGMA = 0.25
 """An edge is known once its standard deviation [m] is below this: half of the widest gap inside a row."""
 POINT_LENGTH = 0.15
@@ -165,50 +165,70 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     begin = first_of_body(chain, reading.variance)
     whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
-    gain = 0.0
     if at > 0:
         parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
         first = _fit_part(chain, 0, at - 1, reading, begins, parts)
         second = _fit_part(chain, at, last, reading, parts, ends)
-        gain = split_gain(chain, at, (whole.landmark, first.landmark, second.landmark), reading.variance)
-        if gain > SPLIT_CHI_SQUARE:
-            first = _with_gap_evidence(first, chain, 0, at - 1, 0.0, reading.variance)
+        segments = (whole.landmark, first.landmark, second.landmark)
+        if split_gain(chain, at, segments, reading.variance) > SPLIT_CHI_SQUARE:
+            first = _with_gap_evidence(first, chain, 0, at - 1, at // 2, reading.variance)
             update = _put(update, first, (chain.begins_at_edge, True), at, params)
             update = update._replace(chain=without_echoes_before(chain, at))
-            second = _with_gap_evidence(second, chain, at, last, 0.0, reading.variance)
+            second = _with_gap_evidence(second, chain, at, last, (at + last) // 2, reading.variance)
             return _put(update, second, (True, ends_at_edge), update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
         chain, whole.landmark, reading.sensor, reading.variance
     ):
         return update._replace(chain=update.chain._replace(fitted=update.chain.used))
-    whole = _with_gap_evidence(whole, chain, 0, last, gain, reading.variance)
+    whole = _with_gap_evidence(whole, chain, 0, last, at if at > 0 else last // 2, reading.variance)
     return _put(update, whole, (chain.begins_at_edge, ends_at_edge), update.chain.used, params)
 
 
 def _with_gap_evidence(
-    fit: SegmentFit, chain: EchoChain, first: int, last: int, gain: float, variance: float
+    fit: SegmentFit, chain: EchoChain, first: int, last: int, top: int, variance: float
 ) -> SegmentFit:
-    """Return the fit of a part of a chain with the log-likelihood ratio of a gap in it, a split of which gains so much.
+    """Return the fit of a part of a chain with the log-likelihood ratio of a gap between cars across the road in it.
 
-    Over a gap of width w ranges at the distance d rise by t2 / 2d, t from the nearer corner: of echoes every s metres
-    that is a chi square of w5 / (320 s d2 variance). The root of ``gain`` is the amplitude that was found of it, at one
-    of the places where a gap may be. The ``variance`` [m2] of an echo is at least that of the residuals.
+    Over a gap of width w ranges at the distance d rise by t2 / 2d, t from the nearer corner. A matched filter tells how
+    well that explains the hump with its ``top``; a gap there leaves whole cars on both sides. The ``variance`` [m2] of
+    an echo is at least that of the residuals.
     """
     segment = fit.landmark
     total = 0.0
     for number in range(MAX_ECHOES):
         if first <= number <= last:
             total += chi_square_of(segment, chain.echoes[number], variance)
-    distance = chain.echoes[(first + last) // 2].range
-    spacing = max(_step(chain.echoes[first], chain.echoes[last]) / max(last - first, 1), chain.spacing)
-    noise = 320.0 * spacing * distance * distance * variance * max(1.0, total / (last - first + 1))
+    noise = variance * max(1.0, total / (last - first + 1))
+    middle = along_of(segment, chain.echoes[top].x, chain.echoes[top].y)
     ratio = 0.0
     for width in GAP_WIDTHS:
-        expected = min(width * width * width * width * width / noise, MAX_GAP_CHI_SQUARE)
-        found = math.exp(math.sqrt(max(gain, 0.0) * expected))
-        places = max(length_of(segment) / width, 1.0)
-        ratio += math.exp(-0.5 * expected) * (1.0 + (found - 1.0) / places)
+        found = 0.0
+        expected = 0.0
+        for number in range(MAX_ECHOES):
+            if first <= number <= last:
+                echo = chain.echoes[number]
+                t = max(0.5 * width - abs(along_of(segment, echo.x, echo.y) - middle), 0.0)
+                rise = 0.5 * t * t / echo.range
+                found += rise * range_behind(segment, echo) / noise
+                expected += rise * rise / noise
+        before = _share_of_cars(middle - 0.5 * width - segment.start)
+        share = before * _share_of_cars(segment.end - middle - 0.5 * width)
+        elsewhere = math.exp(-min(0.5 * expected, MAX_GAP_EVIDENCE))
+        there = math.exp(min(max(found - 0.5 * expected, -MAX_GAP_EVIDENCE), MAX_GAP_EVIDENCE))
+        ratio += elsewhere + (there - elsewhere) * share
     return fit._replace(landmark=segment._replace(gap_evidence=math.log(ratio / len(GAP_WIDTHS))))
+
+
+def _share_of_cars(length: float) -> float:
+    """Return how well cars across the road, one per bay, explain a part of a side of ``length`` [m]: 0 to 1.
+
+    The last one may be observed in part only.
+    """
+    excess = max(length - CAR_WIDTH, 0.0)
+    bays = math.floor(excess / BAY_WIDTH + 0.5)
+    deviation = excess - bays * BAY_WIDTH
+    variance = CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA + bays * BAY_SIGMA * BAY_SIGMA
+    return math.exp(-0.5 * deviation * deviation / variance)
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:

@@ -48,7 +48,7 @@ class Landmark(NamedTuple):
     contradictions: int = 0
     """Expected echoes that did not come, in a row."""
     gap_evidence: float = 0.0
-    """ln P(its echoes | a gap between two cars in it) - ln P(its echoes | one body)."""
+    """ln P(its echoes | a gap between two cars across the road in it) - ln P(its echoes | none)."""
 
 
 def segment_point(landmark: Landmark, along: float) -> Point:

@@ -1,10 +1,18 @@
-"""Parameters of the map: sensor noise, odometry error, gates, and when a landmark is confirmed or deleted."""
+"""Parameters of the map: sensor noise, odometry error, gates, confirmation and deletion; how cars stand in rows."""
 
 from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 
 HOUSE = "project default; the source states none"
+CAR_LENGTH = 4.4
+CAR_LENGTH_SIGMA = 0.5
+CAR_WIDTH = 1.8
+CAR_WIDTH_SIGMA = 0.2
+"""Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
+BAY_WIDTH = 2.6
+BAY_SIGMA = 0.3
+"""Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
 
 
 class MappingParams(NamedTuple):

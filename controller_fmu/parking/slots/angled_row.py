@@ -15,14 +15,16 @@ from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_
 from controller_fmu.parking.map.free_space import Ray, is_free
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
-from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.slots.candidate import (
+from controller_fmu.parking.map.params import (
     BAY_SIGMA,
     BAY_WIDTH,
     CAR_LENGTH,
     CAR_LENGTH_SIGMA,
     CAR_WIDTH,
     CAR_WIDTH_SIGMA,
+    MappingParams,
+)
+from controller_fmu.parking.slots.candidate import (
     LOG_TEN,
     MAX_CAR,
     MAX_POST,

@@ -17,7 +17,15 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.free_space import Ray, is_free
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import (
+    BAY_SIGMA,
+    BAY_WIDTH,
+    CAR_LENGTH,
+    CAR_LENGTH_SIGMA,
+    CAR_WIDTH,
+    CAR_WIDTH_SIGMA,
+    MappingParams,
+)
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import (
     MAX_MEMBERS,
@@ -35,13 +43,6 @@ UNKNOWN_DEPTH = 50.0
 """Depth [m] of a gap in which nothing was detected."""
 LOG_TEN = 2.3
 """Log of the likelihood ratio ten."""
-CAR_LENGTH = 4.4
-CAR_LENGTH_SIGMA = 0.5
-CAR_WIDTH = 1.8
-CAR_WIDTH_SIGMA = 0.2
-"""Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
-MERGING_PENALTY = 1.4
-"""Log of four: of the gaps between cars in a row the map tells three of four apart."""
 MAX_MERGED = 4
 """So many cars in a row at most seem one side."""
 MERGED_LENGTH = 1.0
@@ -52,9 +53,6 @@ MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 MAX_POST = 0.6
 """A shorter side [m] may be a pillar's."""
-BAY_WIDTH = 2.6
-BAY_SIGMA = 0.3
-"""Bays of car parks are 2.3 to 2.9 m wide, cars beside a road stand 0.4 to 1.2 m apart: mean, standard deviation."""
 MIN_INSET = 0.25
 """What stands at least this far [m] from both neighbours and behind their fronts is in the gap."""
 SAMPLE_COUNT = 9
@@ -241,9 +239,8 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
             is_started = member.start_known or number + 1 < candidate.row.used
             is_complete = is_started and (member.end_known or number > 0)
             if length < 2.0 * MAX_CAR:
-                evidence = member.gap_evidence
-                ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, evidence)
-                ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, evidence)
+                ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, 0.0)
+                ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, member.gap_evidence)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * LOG_TEN
     return ratio
@@ -252,8 +249,8 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
 def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: float, evidence: float) -> float:
     """Return the log-likelihood of a side of ``length`` [m] where cars show one of ``car`` [m], one or some that merge.
 
-    Cars in a row stand as far apart as bays are wider than cars. The ``evidence`` for gaps, a log-likelihood ratio,
-    counts once: those of a row are alike, observable or not. Of an incomplete side the last car has begun.
+    Cars in a row stand as far apart as bays are wider than cars. The map leaves one gap in ten unsplit; the
+    ``evidence`` of its echoes, a log-likelihood ratio, counts once. Of an incomplete side the last car has begun.
     """
     gap_variance = BAY_SIGMA * BAY_SIGMA - CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA
     best = -2.0 * LOG_TEN
@@ -264,7 +261,7 @@ def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: flo
         if not is_complete:
             likelihood = length_log_likelihood(length - MERGED_LENGTH, False, mean, deviation)
             likelihood += length_log_likelihood(-length, False, car - mean, deviation)
-        best = max(best, likelihood + (evidence if gaps > 0 else 0.0) - gaps * MERGING_PENALTY)
+        best = max(best, likelihood + (evidence if gaps > 0 else 0.0) - gaps * LOG_TEN)
     return best
 
 

@@ -15,8 +15,8 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark
-from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
 from controller_fmu.parking.slots.goal import least_depth
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow

@@ -4,15 +4,8 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.slots.candidate import (
-    BAY_WIDTH,
-    CAR_WIDTH,
-    CAR_WIDTH_SIGMA,
-    SlotCandidate,
-    SlotType,
-    into_heading,
-    row_point,
-)
+from controller_fmu.parking.map.params import BAY_WIDTH, CAR_WIDTH, CAR_WIDTH_SIGMA
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import SlotRow
 from modelkit.maths import PI

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import CAR_LENGTH, CAR_LENGTH_SIGMA, CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
     PredictedRange,
@@ -22,10 +22,6 @@ from controller_fmu.parking.measurement.predicted_range import (
 )
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
 from controller_fmu.parking.slots.candidate import (
-    CAR_LENGTH,
-    CAR_LENGTH_SIGMA,
-    CAR_WIDTH,
-    CAR_WIDTH_SIGMA,
     UNKNOWN_DEPTH,
     SlotCandidate,
     SlotType,

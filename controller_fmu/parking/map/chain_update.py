@@ -205,9 +205,9 @@ def _with_gap_evidence(
         found = 0.0
         expected = 0.0
         for number in range(MAX_ECHOES):
-            if first <= number <= last:
-                echo = chain.echoes[number]
-                t = max(0.5 * width - abs(along_of(segment, echo.x, echo.y) - middle), 0.0)
+            echo = chain.echoes[number]
+            t = 0.5 * width - abs(along_of(segment, echo.x, echo.y) - middle)
+            if first <= number <= last and t > 0.0:
                 rise = 0.5 * t * t / echo.range
                 found += rise * range_behind(segment, echo) / noise
                 expected += rise * rise / noise

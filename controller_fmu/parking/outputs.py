@@ -8,6 +8,7 @@ from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import is_silent
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
+from controller_fmu.parking.planning.gear_segments import gear_segment
 from controller_fmu.parking.planning.planner import PathSegment
 from controller_fmu.parking.signals import (
     MOVE_SEGMENTS,
@@ -83,7 +84,7 @@ def prompt_of(memory: ParkingMemory, params: ParkingParams) -> int:
     if is_driver_driving(params) and state not in (ParkingState.STANDBY, ParkingState.TAKEOVER):
         if state != ParkingState.DRIVING:
             return Prompt.STOP
-        if memory.clocks.waiting == 0:
+        if memory.clocks.common.waiting == 0:
             return Prompt.SLOW_DOWN
         return Prompt.FORWARD if memory.progress.direction > 0.0 else Prompt.REVERSE
     return Prompt.NONE
@@ -136,17 +137,14 @@ def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
 
 def _current_move(progress: PathProgress) -> DrivenMove:
     """Return the segments from the one in hand up to the next change of direction."""
-    direction = sign(progress.path.segments[progress.segment].distance)
-    count = 0
-    for number in range(MOVE_SEGMENTS):
-        at = progress.segment + number
-        if count == number and at < progress.path.used and progress.path.segments[at].distance * direction > 0.0:
-            count = count + 1
+    last = gear_segment(progress.path, progress.segment).last
     pieces = tuple(
-        _move_piece(progress.path.segments[progress.segment + number]) if number < count else PlannedPiece()
+        _move_piece(progress.path.segments[progress.segment + number])
+        if progress.segment + number <= last
+        else PlannedPiece()
         for number in range(MOVE_SEGMENTS)
     )
-    return DrivenMove(progress.begin, int(direction), pieces)
+    return DrivenMove(progress.begin, int(sign(progress.path.segments[progress.segment].distance)), pieces)
 
 
 def _move_piece(segment: PathSegment) -> PlannedPiece:

@@ -5,6 +5,9 @@ import math
 from controller_fmu.common.chart import bit
 from controller_fmu.common.driver_selection import ChosenTask
 from controller_fmu.common.external_slot import SlotKind
+from controller_fmu.common.monitor import MonitorState
+from controller_fmu.common.phases import PhaseExpectation
+from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.following.params import FollowingContext
@@ -36,7 +39,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
 from controller_fmu.parking.monitor.fault_monitor import (
     ExpectedMotion,
     FaultClocks,
-    FaultLimits,
     advance_clocks,
     fault_reason,
     input_fault,
@@ -52,7 +54,6 @@ from controller_fmu.parking.path_planning import (
     is_near,
     max_manoeuvres,
     slot_in_map,
-    stands_in_slot,
     with_way_out,
 )
 from controller_fmu.parking.perception import (
@@ -72,7 +73,7 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, row_
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
-from modelkit.maths import clamp, move_towards, sign
+from modelkit.maths import move_towards, sign
 from modelkit.vocabulary import Pose
 
 REPLAN_TIME = 0.3
@@ -120,20 +121,19 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         fault = input_fault(inputs)
         fault = Reason.TIMEOUT if fault == Reason.NONE and late else fault
         return memory._replace(reason=fault) if fault != Reason.NONE else memory
-    moves = state in (ParkingState.STEERING, ParkingState.DRIVING, ParkingState.STRAIGHTENING)
-    drives = state == ParkingState.DRIVING
-    steers = state != ParkingState.PLANNING
-    blocked = memory.verdict.is_blocked
-    expectation = ExpectedMotion(steers, moves, blocked, memory.steering_wheel_angle, params.monitor.over_speed)
-    limit = params.limit
-    if memory.strategy != Strategy.SLOT:
-        limit = limit._replace(manoeuvres=max_manoeuvres(memory, params))
-    rate = params.car.steering.rate_limit
-    limits = FaultLimits(limit, rate, params.threshold.standstill, params.monitor.over_speed_time)
-    clocks = advance_clocks(memory.clocks, expectation, inputs, limits, dt_ns)
+    phase = PhaseExpectation(
+        state != ParkingState.PLANNING,
+        int(memory.progress.direction) if state == ParkingState.DRIVING else 0,
+        state in (ParkingState.STEERING, ParkingState.STRAIGHTENING),
+    )
+    monitor = params.monitor
+    expectation = ExpectedMotion(phase, memory.verdict.is_blocked, memory.steering_wheel_angle, monitor.over_speed)
+    clocks = advance_clocks(memory.clocks, expectation, inputs, params, dt_ns)
+    spare = 0 if memory.strategy == Strategy.SLOT else max_manoeuvres(memory, params) - params.limit.manoeuvres
     reason = memory.reason
     if reason == Reason.NONE:
-        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, limits)
+        manoeuvres = memory.progress.manoeuvres - spare
+        reason = fault_reason(clocks, inputs, phase, manoeuvres, monitor.over_speed_time, params)
     if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
@@ -270,14 +270,11 @@ def is_lost(progress: PathProgress, params: ParkingParams) -> bool:
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
-    if memory.strategy == Strategy.PULL_OUT:
+    is_accepted = is_acceptable(memory, inputs.odometry, params)
+    if memory.strategy == Strategy.PULL_OUT or (memory.plan.is_final and is_accepted):
         return True
-    if memory.plan.is_final and is_acceptable(memory, inputs.odometry, params):
-        return True
-    if memory.strategy == Strategy.SLOT:
-        slot = slot_in_map(memory, inputs.odometry, params)
-        if not stands_in_slot(slot, inputs.odometry, params):
-            return False
+    if memory.strategy == Strategy.SLOT and not is_accepted:
+        return False
     return is_at_goal(memory, inputs.odometry, inputs.odometry, params)
 
 
@@ -367,7 +364,7 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
         plan=PlanProgress(),
         progress=PathProgress(speed_delay=memory.progress.speed_delay),
         verdict=MonitorVerdict(),
-        clocks=FaultClocks(steering=memory.clocks.steering),
+        clocks=FaultClocks(MonitorState(wheel=memory.clocks.common.wheel)),
     )
 
 
@@ -388,14 +385,12 @@ def _request(
 ) -> ParkingMemory:
     """Return the memory with the requested steering-wheel angle and speed."""
     state = memory.state
-    limit = params.car.steering.angle_limit
-    ratio = params.car.steering.ratio
     wheel = memory.steering_wheel_angle
     speed = 0.0
     if state == ParkingState.STEERING:
-        wheel = clamp(ratio * standstill_wheel_angle(memory.progress, context), -limit, limit)
+        wheel = wheel_request(standstill_wheel_angle(memory.progress, context), 1.0, params)
     if state == ParkingState.DRIVING or state == ParkingState.STOPPING:
-        wheel = clamp(ratio * memory.progress.front_wheel_angle, -limit, limit)
+        wheel = wheel_request(memory.progress.front_wheel_angle, 1.0, params)
     if state == ParkingState.STRAIGHTENING:
         wheel = 0.0
     if state == ParkingState.DRIVING:

@@ -2,6 +2,7 @@
 
 import pytest
 
+from controller_fmu.common.monitor import MonitorState
 from controller_fmu.common.params import Longitudinal
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
@@ -24,7 +25,7 @@ BY_DRIVER = OWN._replace(drive=OWN.drive._replace(longitudinal=Longitudinal.DRIV
 SAMPLE = 10_000_000
 REVERSING = ParkingMemory(state=ParkingState.DRIVING, speed=-0.5)
 REVERSING = REVERSING._replace(progress=REVERSING.progress._replace(direction=-1.0))
-AT_REST = REVERSING._replace(clocks=FaultClocks(waiting=SAMPLE))
+AT_REST = REVERSING._replace(clocks=FaultClocks(MonitorState(waiting=SAMPLE)))
 BLOCKED = REVERSING._replace(state=ParkingState.STOPPING, verdict=MonitorVerdict(is_blocked=True))
 
 

@@ -4,11 +4,12 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.common.monitor import MonitorState
+from controller_fmu.common.phases import PhaseExpectation
 from controller_fmu.interface import Reason
 from controller_fmu.parking.monitor.fault_monitor import (
     ExpectedMotion,
     FaultClocks,
-    FaultLimits,
     advance_clocks,
     fault_reason,
 )
@@ -17,11 +18,13 @@ from controller_fmu.parking.signals import ParkingSystemInput
 
 PARAMS = ParkingParams()
 LIMIT = PARAMS.limit
-LIMITS = FaultLimits(LIMIT, PARAMS.car.steering.rate_limit, PARAMS.threshold.standstill, PARAMS.monitor.over_speed_time)
+DRIVING = PhaseExpectation(direction=1)
+STEERING = PhaseExpectation(steering=True)
 MILLISECOND = 1_000_000
 CLOCKS = {
     "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
     "fast": (PARAMS.monitor.over_speed_time, Reason.OVER_SPEED),
+    "wrong_direction_ns": (LIMIT.wrong_direction, Reason.WRONG_DIRECTION),
     "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
     "waiting": (LIMIT.driver_response_timeout, Reason.NOT_MOVING),
     "running": (LIMIT.duration, Reason.TIMEOUT),
@@ -29,22 +32,32 @@ CLOCKS = {
 """Clock -> its limit [s], and the reason."""
 
 
+def clocks_with(**own: Any) -> FaultClocks:
+    """Return the clocks with these at a time [ns], be they common to all systems or not."""
+    common = {name: value for name, value in own.items() if name in MonitorState._fields}
+    return FaultClocks(MonitorState(**common), **{name: own[name] for name in own if name not in common})
+
+
+def reason_of(clocks: FaultClocks, phase: PhaseExpectation, manoeuvres: int = 0) -> int:
+    return fault_reason(clocks, ParkingSystemInput(), phase, manoeuvres, PARAMS.monitor.over_speed_time, PARAMS)
+
+
 @pytest.mark.parametrize("clock", CLOCKS)
 def test_a_drive_fails_just_past_each_limit(clock: str) -> None:
     seconds, reason = CLOCKS[clock]
     around: list[dict[str, Any]] = [{clock: round(seconds * 1e9) + sign * MILLISECOND} for sign in (-1, 1)]
-    found = [fault_reason(FaultClocks(**own), ParkingSystemInput(), True, 0, LIMITS) for own in around]
+    found = [reason_of(clocks_with(**own), DRIVING) for own in around]
     assert found == [Reason.NONE, reason]
 
 
 def test_a_wheel_that_does_not_turn_is_a_steering_fault() -> None:
-    late = FaultClocks(waiting=round(LIMIT.driver_response_timeout * 1e9) + MILLISECOND)
-    assert fault_reason(late, ParkingSystemInput(), False, 0, LIMITS) == Reason.STEERING_FAULT
+    late = clocks_with(waiting=round(LIMIT.driver_response_timeout * 1e9) + MILLISECOND)
+    assert reason_of(late, STEERING) == Reason.STEERING_FAULT
 
 
 def test_more_manoeuvres_than_allowed_end_the_drive() -> None:
     most = LIMIT.manoeuvres
-    found = [fault_reason(FaultClocks(), ParkingSystemInput(), True, count, LIMITS) for count in (most, most + 1)]
+    found = [reason_of(FaultClocks(), DRIVING, count) for count in (most, most + 1)]
     assert found == [Reason.NONE, Reason.TOO_MANY_SHIFTS]
 
 
@@ -55,9 +68,9 @@ def test_more_manoeuvres_than_allowed_end_the_drive() -> None:
 def test_the_vehicle_is_waited_for_where_it_should_move_and_nothing_is_in_the_way(
     moves: bool, speed: float, blocked: bool, waits: bool
 ) -> None:
-    expected = ExpectedMotion(True, moves, blocked, 0.0, PARAMS.monitor.over_speed)
+    expected = ExpectedMotion(DRIVING if moves else PhaseExpectation(), blocked, 0.0, PARAMS.monitor.over_speed)
     inputs = ParkingSystemInput(measured_speed=speed)
-    clocks = advance_clocks(FaultClocks(waiting=5), expected, inputs, LIMITS, MILLISECOND)
-    assert clocks.waiting == (5 + MILLISECOND if waits else 0)
-    assert clocks.stopping == (MILLISECOND if not moves and speed > 0.0 else 0)
+    clocks = advance_clocks(clocks_with(waiting=5), expected, inputs, PARAMS, MILLISECOND)
+    assert clocks.common.waiting == (5 + MILLISECOND if waits else 0)
+    assert clocks.common.stopping == (MILLISECOND if not moves and speed > 0.0 else 0)
     assert clocks.running == MILLISECOND

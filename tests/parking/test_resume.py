@@ -2,6 +2,7 @@
 
 import pytest
 
+from controller_fmu.common.monitor import MonitorState
 from controller_fmu.common.steering_monitor import SteeringMonitorState
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
@@ -37,9 +38,9 @@ PULLED = SteeringMonitorState(request=1.0, angle=0.5, away_ns=SECOND // 4)
         (ParkingSystemInput(brake_pedal=0.1), FaultClocks(running=SECOND), False),
         (ParkingSystemInput(gear=Gear.NEUTRAL, measured_speed=-0.5), FaultClocks(running=SECOND), True),
         (ParkingSystemInput(gear=Gear.NEUTRAL), FaultClocks(running=SECOND), False),
-        (ParkingSystemInput(), FaultClocks(steering=PULLED), True),
-        (ParkingSystemInput(), FaultClocks(steering=PULLED._replace(request=0.6)), False),
-        (ParkingSystemInput(), FaultClocks(steering=PULLED._replace(away_ns=SECOND // 10)), False),
+        (ParkingSystemInput(), FaultClocks(MonitorState(wheel=PULLED)), True),
+        (ParkingSystemInput(), FaultClocks(MonitorState(wheel=PULLED._replace(request=0.6))), False),
+        (ParkingSystemInput(), FaultClocks(MonitorState(wheel=PULLED._replace(away_ns=SECOND // 10))), False),
     ],
 )
 def test_pedal_gear_and_wheel_are_a_takeover(inputs: ParkingSystemInput, clocks: FaultClocks, taken: bool) -> None:

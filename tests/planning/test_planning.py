@@ -14,7 +14,7 @@ from controller_fmu.parking.planning.analytic_expansion import cheapest_word
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST
 from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
-from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
+from controller_fmu.parking.planning.problem import SearchGrid, SearchProblem, SearchRegion
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words, turn_of
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
 from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork, word_length
@@ -50,7 +50,7 @@ def test_distance_to_an_edge_is_that_of_shapely() -> None:
 
 def word_problem() -> SearchProblem:
     """Return a problem of which words need the outline and the costs alone."""
-    region = SearchRegion(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1)
+    region = SearchRegion(0.0, 0.0, 1.0, SearchGrid(1.0, 1), SearchGrid(1.0, 1))
     return SearchProblem(ORIGIN, ORIGIN, CAR, region, True, 0.1, SEARCH_SCHEDULE[0])
 
 

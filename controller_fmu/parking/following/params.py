@@ -2,11 +2,10 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.common.params import Longitudinal
+from controller_fmu.common.params import HOUSE, Longitudinal
 from modelkit.car import Car
 from modelkit.signal import Role, Signal
 
-HOUSE = "project default; the source states none"
 RATE_FRACTION = 0.9
 """Of the steering wheel's rate that a transition asks for; the rest is for tracking."""
 START_ACCELERATION = 1.0

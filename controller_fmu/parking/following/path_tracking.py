@@ -131,18 +131,9 @@ def next_segment(progress: PathProgress, pose: Pose, context: FollowingContext) 
     """Return the progress of a vehicle that stands at ``pose``: on the segment in hand, if driven on the next."""
     if progress.remaining > MIN_REMAINING:
         return progress
-    segment = progress.path.segments[progress.segment]
-    begin = pose_along_arc(progress.begin, segment.distance, segment.curvature)
-    number = progress.segment + 1
-    remaining = abs(progress.path.segments[number].distance)
-    return progress._replace(
-        segment=number,
-        begin=begin,
-        stand=pose,
-        remaining=remaining,
-        reference=begin,
-        upcoming=upcoming_stop(progress.path, number, remaining, context),
-    )
+    after = _roll_to_next(progress._replace(remaining=0.0))
+    upcoming = upcoming_stop(after.path, after.segment, after.remaining, context)
+    return after._replace(stand=pose, reference=after.begin, upcoming=upcoming)
 
 
 def set_out(progress: PathProgress) -> PathProgress:

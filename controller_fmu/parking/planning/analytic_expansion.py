@@ -4,13 +4,13 @@ from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.reeds_shepp import turn_of, word_curvature
-from controller_fmu.parking.planning.search_tree import set_best
 from controller_fmu.parking.planning.work import (
     NO_INDEX,
     WORD_SEGMENTS,
     PlanningWork,
     PlanValue,
     discard_word,
+    set_best,
     word_length,
 )
 from modelkit.vocabulary import Pose

@@ -30,11 +30,12 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
     sin = math.sin(pose.heading)
     x = pose.x + car.centre_ahead * cos
     y = pose.y + car.centre_ahead * sin
-    column = math.floor((x - region.x0) / region.edge_cell)
-    row = math.floor((y - region.y0) / region.edge_cell)
-    if column < 0 or row < 0 or column >= region.edge_cell_count or row >= region.edge_cell_count:
+    grid = region.edge_grid
+    column = math.floor((x - region.x0) / grid.cell)
+    row = math.floor((y - region.y0) / grid.cell)
+    if column < 0 or row < 0 or column >= grid.row_cells or row >= grid.row_cells:
         return 0.0
-    cell = row * region.edge_cell_count + column
+    cell = row * grid.row_cells + column
     best = MAX_CLEARANCE * MAX_CLEARANCE
     for place in range(work.cell_start[cell], work.cell_start[cell + 1]):
         edge = work.cell_edge[place]

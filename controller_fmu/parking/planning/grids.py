@@ -6,7 +6,7 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.geometry.polygons import clip_to_box, segment_distance_squared
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
-from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
+from controller_fmu.parking.planning.problem import SearchGrid, SearchProblem, SearchRegion
 from controller_fmu.parking.planning.work import (
     BUCKET_COUNT,
     NO_INDEX,
@@ -21,12 +21,6 @@ HALF_DIAGONAL = 0.7072
 UNREACHABLE_COST = 1e6
 """Distance [m] from where the target cannot be reached."""
 NOT_QUEUED = -2
-
-
-def edge_reach(region: SearchRegion, car: VehicleOutline) -> float:
-    """Return how far [m] from a cell's centre an edge can matter to a car whose rear axle is in the cell."""
-    radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
-    return HALF_DIAGONAL * region.edge_cell + radius + MAX_CLEARANCE
 
 
 def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: SearchRegion) -> int:
@@ -46,7 +40,7 @@ def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: S
 
 def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: VehicleOutline) -> bool:
     """List the edges near each cell; returns whether the list has room for all."""
-    cells = region.edge_cell_count * region.edge_cell_count
+    cells = region.edge_grid.row_cells * region.edge_grid.row_cells
     for cell in range(cells + 1):
         work.cell_start[cell] = 0
     for edge in range(edges):
@@ -82,20 +76,20 @@ def _edge(work: PlanningWork, edge: int, region: SearchRegion) -> _EdgeBounds:
 
 
 def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: VehicleOutline, fill: bool) -> None:
-    """Count the edge at each cell it is near, or put it into the cell's list, from the end of the list on."""
-    reach = edge_reach(region, car)
+    """Count the edge at each cell it is near, or put it into the cell's list, from the end of the list on.
+
+    Near is within the distance [m] of the cell's centre that can matter to a car whose own centre is in the cell.
+    """
+    grid = region.edge_grid
+    radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
+    reach = HALF_DIAGONAL * grid.cell + radius + MAX_CLEARANCE
     x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)
-    first = _cell(low_x - reach, region.edge_cell, region.edge_cell_count)
-    last = _cell(low_x + abs(dx) + reach, region.edge_cell, region.edge_cell_count)
-    for row in range(
-        _cell(low_y - reach, region.edge_cell, region.edge_cell_count),
-        _cell(low_y + abs(dy) + reach, region.edge_cell, region.edge_cell_count) + 1,
-    ):
-        for column in range(first, last + 1):
-            x = (column + 0.5) * region.edge_cell - x1
-            y = (row + 0.5) * region.edge_cell - y1
+    for row in range(_cell(low_y - reach, grid), _cell(low_y + abs(dy) + reach, grid) + 1):
+        for column in range(_cell(low_x - reach, grid), _cell(low_x + abs(dx) + reach, grid) + 1):
+            x = (column + 0.5) * grid.cell - x1
+            y = (row + 0.5) * grid.cell - y1
             if segment_distance_squared(x, y, dx, dy) < reach * reach:
-                cell = row * region.edge_cell_count + column
+                cell = row * grid.row_cells + column
                 place = work.cell_start[cell]
                 if fill:
                     work.cell_start[cell] = place - 1
@@ -104,51 +98,41 @@ def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: Vehicl
                     work.cell_start[cell] = place + 1
 
 
-def _cell(at: float, side: float, count: int) -> int:
-    cell = math.floor(at / side)
-    return 0 if cell < 0 else (count - 1 if cell >= count else cell)
+def _cell(at: float, grid: SearchGrid) -> int:
+    cell = math.floor(at / grid.cell)
+    return 0 if cell < 0 else (grid.row_cells - 1 if cell >= grid.row_cells else cell)
 
 
 def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -> None:
     """Mark the cost-to-go cells whose every point is too near an edge for the rear axle's midpoint."""
     region = problem.region
-    count = region.cost_to_go_count
-    for cell in range(count * count):
+    grid = region.cost_to_go
+    for cell in range(grid.row_cells * grid.row_cells):
         work.cost_to_go[cell] = UNREACHABLE_COST
         work.cost_to_go_next[cell] = NOT_QUEUED
-    reach = problem.car.half_width + problem.margin - HALF_DIAGONAL * region.cost_to_go_cell
+    reach = problem.car.half_width + problem.margin - HALF_DIAGONAL * grid.cell
     for edge in range(edges):
         x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)
-        for row in range(
-            _cell(low_y - reach, region.cost_to_go_cell, count),
-            _cell(low_y + abs(dy) + reach, region.cost_to_go_cell, count) + 1,
-        ):
-            y = (row + 0.5) * region.cost_to_go_cell - y1
+        for row in range(_cell(low_y - reach, grid), _cell(low_y + abs(dy) + reach, grid) + 1):
+            y = (row + 0.5) * grid.cell - y1
             from_x = low_x
             to_x = low_x + abs(dx)
-            if abs(dy) > region.cost_to_go_cell:
+            if abs(dy) > grid.cell:
                 a = x1 + dx * (y - reach) / dy
                 b = x1 + dx * (y + reach) / dy
                 from_x = max(min(a, b), from_x)
                 to_x = min(max(a, b), to_x)
-            for column in range(
-                _cell(from_x - reach, region.cost_to_go_cell, count),
-                _cell(to_x + reach, region.cost_to_go_cell, count) + 1,
-            ):
-                x = (column + 0.5) * region.cost_to_go_cell - x1
+            for column in range(_cell(from_x - reach, grid), _cell(to_x + reach, grid) + 1):
+                x = (column + 0.5) * grid.cell - x1
                 if segment_distance_squared(x, y, dx, dy) < reach * reach:
-                    work.cost_to_go[row * count + column] = -1.0
+                    work.cost_to_go[row * grid.row_cells + column] = -1.0
 
 
 def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
     """Measure the distance [m] of a point from each free cell to the target, over eight neighbours (Dijkstra, Dial)."""
-    region = problem.region
-    count = region.cost_to_go_count
     for number in range(BUCKET_COUNT):
         work.bucket[number] = NO_INDEX
-    row = _cell(problem.target.y - region.y0, region.cost_to_go_cell, count)
-    column = _cell(problem.target.x - region.x0, region.cost_to_go_cell, count)
-    start = row * count + column
+    start = _cost_to_go_cell(problem.target.x, problem.target.y, problem.region)
     work.cost_to_go[start] = 0.0
     work.cost_to_go_next[start] = NO_INDEX
     work.bucket[0] = start
@@ -157,23 +141,22 @@ def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
             cell = work.bucket[number]
             work.bucket[number] = work.cost_to_go_next[cell]
             work.cost_to_go_next[cell] = NOT_QUEUED
-            _relax(work, cell, region)
+            _relax(work, cell, problem.region.cost_to_go)
 
 
-def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
-    count = region.cost_to_go_count
-    row = cell // count
-    column = cell - row * count
+def _relax(work: PlanningWork, cell: int, grid: SearchGrid) -> None:
+    row = cell // grid.row_cells
+    column = cell - row * grid.row_cells
     here = work.cost_to_go[cell]
-    for r in range(max(row - 1, 0), min(row + 2, count)):
-        for c in range(max(column - 1, 0), min(column + 2, count)):
-            other = r * count + c
+    for r in range(max(row - 1, 0), min(row + 2, grid.row_cells)):
+        for c in range(max(column - 1, 0), min(column + 2, grid.row_cells)):
+            other = r * grid.row_cells + c
             before = work.cost_to_go[other]
-            distance = here + region.cost_to_go_cell * (1.0 if r == row or c == column else 1.41421356)
+            distance = here + grid.cell * (1.0 if r == row or c == column else 1.41421356)
             if before >= 0.0 and distance < before - 1e-3:
                 work.cost_to_go[other] = distance
                 if work.cost_to_go_next[other] == NOT_QUEUED:
-                    number = math.floor(distance / region.cost_to_go_cell)
+                    number = math.floor(distance / grid.cell)
                     number = number if number < BUCKET_COUNT else BUCKET_COUNT - 1
                     work.cost_to_go_next[other] = work.bucket[number]
                     work.bucket[number] = other
@@ -181,10 +164,13 @@ def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
 
 def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchRegion) -> float:
     """Return the length [m] of the shortest way of a point from (x, y) to the target around the edges."""
-    column = _cell(x - region.x0, region.cost_to_go_cell, region.cost_to_go_count)
-    row = _cell(y - region.y0, region.cost_to_go_cell, region.cost_to_go_count)
-    distance = work.cost_to_go[row * region.cost_to_go_count + column]
+    distance = work.cost_to_go[_cost_to_go_cell(x, y, region)]
     return distance if distance >= 0.0 else UNREACHABLE_COST
+
+
+def _cost_to_go_cell(x: float, y: float, region: SearchRegion) -> int:
+    grid = region.cost_to_go
+    return _cell(y - region.y0, grid) * grid.row_cells + _cell(x - region.x0, grid)
 
 
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:

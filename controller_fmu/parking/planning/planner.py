@@ -28,14 +28,13 @@ from controller_fmu.parking.planning.search_schedule import (
     search_problem,
     search_region,
 )
-from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, path_cost, smooth
+from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, smooth, span_cost
 from controller_fmu.parking.planning.work import (
     MAX_CUSPS,
     REQUEST_SIZE,
     PlanCount,
     PlanningWork,
     PlanValue,
-    set_best_segment,
     set_segment,
 )
 from modelkit.maths import sign
@@ -101,14 +100,12 @@ def search_until(
 
 def continue_search(work: PlanningWork, request: PlanningRequest, most: int) -> int:
     """Bring the search on by at most ``most`` steps, fewer where one is long; returns their count so far."""
-    for number in range(most):
-        phase = work.counts[PlanCount.PHASE]
-        is_long = phase < PlanningPhase.SEARCH
-        if phase == PlanningPhase.FINISHED or (is_long and number > 0):
-            return work.counts[PlanCount.COUNT]
-        step(work, request)
-        if is_long:
-            return work.counts[PlanCount.COUNT]
+    done = 0
+    while done < most and work.counts[PlanCount.PHASE] != PlanningPhase.FINISHED:
+        is_long = work.counts[PlanCount.PHASE] < PlanningPhase.SEARCH
+        if not is_long or done == 0:
+            step(work, request)
+        done = most if is_long else done + 1
     return work.counts[PlanCount.COUNT]
 
 
@@ -266,18 +263,16 @@ def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
     if work.counts[PlanCount.SEGMENT_COUNT] == 0:
         set_segment(work, 0, problem.root, 0.0, 0.0)
         work.counts[PlanCount.SEGMENT_COUNT] = 1
-    cost = path_cost(work, problem)
     count = work.counts[PlanCount.SEGMENT_COUNT]
+    cost = span_cost(work, 0, count, problem)
     best = work.counts[PlanCount.BEST_SEGMENT_COUNT]
     is_worse = best > 0 and work.values[PlanValue.BEST_PATH_COST] <= cost
     if count > MAX_SEGMENTS or cusps_of(work) > work.requested[MAX_CUSPS] or is_worse:
         return
     for number in range(count):
-        if problem.from_goal:
-            last = count - 1 - number
-            set_best_segment(work, number, -work.segment_length[last], work.segment_curvature[last])
-        else:
-            set_best_segment(work, number, work.segment_length[number], work.segment_curvature[number])
+        place = count - 1 - number if problem.from_goal else number
+        work.best_length[number] = -work.segment_length[place] if problem.from_goal else work.segment_length[place]
+        work.best_curvature[number] = work.segment_curvature[place]
     work.counts[PlanCount.BEST_SEGMENT_COUNT] = count
     work.values[PlanValue.BEST_PATH_COST] = cost
     work.values[PlanValue.BEST_PATH_MARGIN] = problem.margin

@@ -27,19 +27,22 @@ class PlanningRequest(NamedTuple):
     """The polygons of the given map are obstacles, too."""
 
 
+class SearchGrid(NamedTuple):
+    """Square cells whose sides are ``cell`` [m] long, ``row_cells`` in a row."""
+
+    cell: float
+    row_cells: int
+
+
 class SearchRegion(NamedTuple):
-    """The part of the plane that is searched, in the frame of the task: a square and its two rasters."""
+    """The part of the plane that is searched, in the frame of the task: a square [m] and its two grids."""
 
     x0: float
     y0: float
     side: float
-    edge_cell: float
-    """Side [m] of a cell that lists the edges near it."""
-    edge_cell_count: int
-    """Such cells in a row."""
-    cost_to_go_cell: float
-    """Side [m] of a cell of the cost-to-go grid."""
-    cost_to_go_count: int
+    edge_grid: SearchGrid
+    """Its cells list the edges near them."""
+    cost_to_go: SearchGrid
 
 
 class SearchResolution(NamedTuple):

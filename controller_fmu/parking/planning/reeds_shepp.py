@@ -12,6 +12,7 @@ Lengths are in radii of the smallest circle, angles of an L positive to the left
 import math
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
 from controller_fmu.parking.planning.work import WORD_SEGMENTS, PlanningWork, PlanValue
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
@@ -25,7 +26,7 @@ MIN_WORD_LENGTH = 1e-6
 """A segment shorter than this, in radii, is left out."""
 
 
-def word_code(a: int, b: int, c: int, d: int, e: int) -> int:
+def word_code(a: int, b: int, c: int, d: int = UNUSED_PIECE, e: int = UNUSED_PIECE) -> int:
     """Return five turns (``LEFT_TURN``, ``STRAIGHT_LINE``, ``RIGHT_TURN``) as one number of two bits each."""
     return a + 4 * (b + 4 * (c + 4 * (d + 4 * e)))
 
@@ -38,6 +39,16 @@ def turn_of(code: int, segment: int) -> int:
 def word_curvature(work: PlanningWork, word: int, segment: int, problem: SearchProblem) -> float:
     """Return the curvature [1/m] of a segment (0 to 4) of a listed word."""
     return (turn_of(work.word_code[word], segment) - 1) * problem.car.max_curvature
+
+
+LSL = word_code(LEFT_TURN, STRAIGHT_LINE, LEFT_TURN)
+LSR = word_code(LEFT_TURN, STRAIGHT_LINE, RIGHT_TURN)
+LRL = word_code(LEFT_TURN, RIGHT_TURN, LEFT_TURN)
+LRLR = word_code(LEFT_TURN, RIGHT_TURN, LEFT_TURN, RIGHT_TURN)
+LRSL = word_code(LEFT_TURN, RIGHT_TURN, STRAIGHT_LINE, LEFT_TURN)
+LRSR = word_code(LEFT_TURN, RIGHT_TURN, STRAIGHT_LINE, RIGHT_TURN)
+LRSLR = word_code(LEFT_TURN, RIGHT_TURN, STRAIGHT_LINE, LEFT_TURN, RIGHT_TURN)
+"""Words by their turns."""
 
 
 class WordRequest(NamedTuple):
@@ -72,53 +83,45 @@ class WordEnd(NamedTuple):
 
 
 class WordSymmetry(NamedTuple):
-    """One of the four images of a word: mirrored or not, driven forward or in reverse."""
+    """One of the eight images of a word: mirrored or not, driven forward or in reverse, from either end."""
 
-    left: int
-    right: int
-    time: float
+    side: float
+    """1.0, or -1.0: left and right are exchanged."""
+    time: float = 1.0
     """1.0, or -1.0: each segment in the other direction of travel."""
-    backwards: bool = False
+    is_backwards: bool = False
     """Its segments in the opposite order."""
-
-
-def list_words(work: PlanningWork, start: Pose, end: Pose, request: WordRequest, problem: SearchProblem) -> int:
-    """List the words from ``start`` to ``end`` that cost less than the limit [m] in ``work``; returns how many."""
-    return _list_words(work, start, end, request, False, problem)
 
 
 def least_word_cost(work: PlanningWork, start: Pose, end: Pose, request: WordRequest, problem: SearchProblem) -> float:
     """Return the cost [m] of the cheapest word from ``start`` to ``end``, or the limit [m] if that is less."""
-    count = _list_words(work, start, end, request, True, problem)
+    count = list_words(work, start, end, request, problem, True)
     return work.word_cost[count - 1] if count > 0 else request.limit
 
 
-def _list_words(
-    work: PlanningWork, start: Pose, end: Pose, request: WordRequest, only_cheaper: bool, problem: SearchProblem
+def list_words(
+    work: PlanningWork,
+    start: Pose,
+    end: Pose,
+    request: WordRequest,
+    problem: SearchProblem,
+    only_cheaper: bool = False,
 ) -> int:
-    choice = WordChoice(request, 1.0 / problem.car.max_curvature, only_cheaper)
-    work.values[PlanValue.WORD_LIMIT] = request.limit
+    """List the words from ``start`` to ``end`` that cost less than the limit [m] in ``work``; returns how many."""
     k = problem.car.max_curvature
-    cos = math.cos(start.heading)
-    sin = math.sin(start.heading)
-    dx = (end.x - start.x) * k
-    dy = (end.y - start.y) * k
-    x = dx * cos + dy * sin
-    y = dy * cos - dx * sin
+    choice = WordChoice(request, 1.0 / k, only_cheaper)
+    work.values[PlanValue.WORD_LIMIT] = request.limit
+    at = point_to_frame((end.x - start.x) * k, (end.y - start.y) * k, Pose(heading=start.heading))
     h = end.heading - start.heading
-    sin_h = math.sin(h)
-    cos_h = math.cos(h)
+    sin = math.sin(h)
+    cos = math.cos(h)
     count = 0
-    for side in range(2):
-        mirror = 1.0 if side == 0 else -1.0
-        left = LEFT_TURN if side == 0 else RIGHT_TURN
-        right = RIGHT_TURN if side == 0 else LEFT_TURN
-        goal = WordEnd(x, y * mirror, h * mirror, sin_h * mirror, cos_h)
-        count = _three_pieces(work, count, goal, WordSymmetry(left, right, 1.0), choice)
-        for distance in range(2):
-            time = 1.0 if distance == 0 else -1.0
-            goal = WordEnd(x * time, y * mirror, h * mirror * time, sin_h * mirror * time, cos_h)
-            count = _more_pieces(work, count, goal, WordSymmetry(left, right, time), choice)
+    for side in (1.0, -1.0):
+        goal = WordEnd(at.x, at.y * side, h * side, sin * side, cos)
+        count = _three_pieces(work, count, goal, WordSymmetry(side), choice)
+        for time in (1.0, -1.0):
+            goal = WordEnd(at.x * time, at.y * side, h * side * time, sin * side * time, cos)
+            count = _more_pieces(work, count, goal, WordSymmetry(side, time), choice)
     return count
 
 
@@ -136,126 +139,102 @@ def _three_pieces(work: PlanningWork, count: int, goal: WordEnd, image: WordSymm
     # on the arc between two others the centre of their circles moves by 2 for each radian
     if not _is_too_long(work, apart if apart > 4.0 else 0.5 * apart, choice):
         towards = math.atan2(sy, sx)
-        code = word_code(image.left, STRAIGHT_LINE, image.left, UNUSED_PIECE, UNUSED_PIECE)
-        count = _arcs(work, count, code, (towards, apart, h - towards), choice)
-        count = _arcs(work, count, code, (towards + PI, -apart, h - towards - PI), choice)
+        count = _arcs(work, count, LSL, (towards, apart, h - towards), image, choice)
+        count = _arcs(work, count, LSL, (towards + PI, -apart, h - towards - PI), image, choice)
         if apart <= 4.0:
-            code = word_code(image.left, image.right, image.left, UNUSED_PIECE, UNUSED_PIECE)
             open_by = math.acos(0.25 * apart)
-            for side in range(2):
-                b = open_by if side == 0 else -open_by
+            for b in (open_by, -open_by):
                 # from centre to centre: towards + b, then towards - b
                 first = towards + b + 0.5 * PI
                 second = towards - b - 0.5 * PI
                 u = wrap_angle(first - second)
-                count = _arcs(work, count, code, (first, u, h - second), choice)
-                other = u - TWO_PI if u > 0.0 else u + TWO_PI
-                count = _arcs(work, count, code, (first, other, h - second), choice)
+                count = _arcs(work, count, LRL, (first, u, h - second), image, choice)
+                count = _arcs(work, count, LRL, (first, _complementary_arc(u), h - second), image, choice)
     sx = goal.x + goal.sin
     sy = goal.y - 1.0 - goal.cos
     square = sx * sx + sy * sy
     line = math.sqrt(max(square - 4.0, 0.0))
     if square >= 4.0 and not _is_too_long(work, line, choice):
-        code = word_code(image.left, STRAIGHT_LINE, image.right, UNUSED_PIECE, UNUSED_PIECE)
-        towards = math.atan2(sy, sx)
-        along = towards + math.atan2(2.0, line)
-        count = _arcs(work, count, code, (along, line, along - h), choice)
-        along = towards + math.atan2(2.0, -line)
-        count = _arcs(work, count, code, (along, -line, along - h), choice)
+        for u in (line, -line):
+            along = math.atan2(sy, sx) + math.atan2(2.0, u)
+            count = _arcs(work, count, LSR, (along, u, along - h), image, choice)
     return count
 
 
-def _arcs(work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float], choice: WordChoice) -> int:
+def _complementary_arc(angle: float) -> float:
+    """Return the arc [rad] in the opposite direction that ends where one of ``angle`` does."""
+    return angle - TWO_PI if angle > 0.0 else angle + TWO_PI
+
+
+def _arcs(
+    work: PlanningWork,
+    count: int,
+    code: int,
+    lengths: tuple[float, float, float],
+    image: WordSymmetry,
+    choice: WordChoice,
+) -> int:
     """List a word of three segments with each outer arc driven forward, or in reverse the other way round."""
     t = wrap_angle(lengths[0])
     u = lengths[1]
     v = wrap_angle(lengths[2])
     if _is_too_long(work, abs(t) + abs(u) + abs(v), choice):
         return count
-    t_other = t - TWO_PI if t > 0.0 else t + TWO_PI
-    v_other = v - TWO_PI if v > 0.0 else v + TWO_PI
-    count = _add(work, count, code, (t, u, v, 0.0, 0.0), choice)
-    count = _add(work, count, code, (t_other, u, v, 0.0, 0.0), choice)
-    count = _add(work, count, code, (t, u, v_other, 0.0, 0.0), choice)
-    return _add(work, count, code, (t_other, u, v_other, 0.0, 0.0), choice)
+    for last in (v, _complementary_arc(v)):
+        for first in (t, _complementary_arc(t)):
+            count = _add(work, count, code, (first, u, last, 0.0, 0.0), image, choice)
+    return count
 
 
 def _more_pieces(work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, choice: WordChoice) -> int:
     """List words of four and five segments: CCCC, CCSC, CSCC and CCSCC, equations 8.7 to 8.11 of the source."""
     h = goal.heading
-    time = image.time
     px = goal.x + goal.sin
     py = goal.y - 1.0 - goal.cos
     square = px * px + py * py
     rho = 0.25 * (2.0 + math.sqrt(square))
-    code = word_code(image.left, image.right, image.left, image.right, UNUSED_PIECE)
     if rho <= 1.0:
         u = math.acos(rho)
         if not _is_too_long(work, 2.0 * u, choice):
             t = _first_of_four(u, -u, px, py)
-            v = wrap_angle(t - 2.0 * u - h)
-            count = _add(work, count, code, (time * t, time * u, -time * u, time * v, 0.0), choice)
+            count = _add(work, count, LRLR, (t, u, -u, wrap_angle(t - 2.0 * u - h), 0.0), image, choice)
     rho = (20.0 - square) / 16.0
     if 0.0 <= rho <= 1.0:
         u = -math.acos(rho)
         if not _is_too_long(work, -2.0 * u, choice):
             t = _first_of_four(u, u, px, py)
-            v = wrap_angle(t - h)
-            count = _add(work, count, code, (time * t, time * u, time * u, time * v, 0.0), choice)
+            count = _add(work, count, LRLR, (t, u, u, wrap_angle(t - h), 0.0), image, choice)
     if square >= 4.0:
         u = 4.0 - math.sqrt(square - 4.0)
         if u <= 0.0 and not _is_too_long(work, PI - u, choice):
             t = wrap_angle(math.atan2((4.0 - u) * px - 2.0 * py, -2.0 * px + (u - 4.0) * py))
-            v = wrap_angle(t - h)
-            q = -0.5 * PI * time
-            code = word_code(image.left, image.right, STRAIGHT_LINE, image.left, image.right)
-            count = _add(work, count, code, (time * t, q, time * u, q, time * v), choice)
+            count = _add(work, count, LRSLR, (t, -0.5 * PI, u, -0.5 * PI, wrap_angle(t - h)), image, choice)
     count = _four_with_line(work, count, goal, image, choice)
     back_x = goal.x * goal.cos + goal.y * goal.sin
     back_y = goal.x * goal.sin - goal.y * goal.cos
     goal = WordEnd(back_x, back_y, h, goal.sin, goal.cos)
-    return _four_with_line(work, count, goal, image._replace(backwards=True), choice)
+    return _four_with_line(work, count, goal, image._replace(is_backwards=True), choice)
 
 
 def _four_with_line(work: PlanningWork, count: int, goal: WordEnd, image: WordSymmetry, choice: WordChoice) -> int:
     """List CCSC or, read backwards, CSCC."""
     h = goal.heading
-    q = -0.5 * PI * image.time
     sx = goal.x - goal.sin
     sy = goal.y - 1.0 + goal.cos
     square = sx * sx + sy * sy
     r = math.sqrt(max(square - 4.0, 0.0))
     if square >= 4.0 and not _is_too_long(work, 0.5 * PI + abs(2.0 - r), choice):
-        t = image.time * wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
-        u = image.time * (2.0 - r)
-        v = image.time * wrap_angle(h - 0.5 * PI - t * image.time)
-        count = _add_four(work, count, image, image.left, (t, q, u, v), choice)
+        t = wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
+        v = wrap_angle(h - 0.5 * PI - t)
+        count = _add(work, count, LRSL, (t, -0.5 * PI, 2.0 - r, v, 0.0), image, choice)
     px = goal.x + goal.sin
     py = goal.y - 1.0 - goal.cos
     rho = math.sqrt(px * px + py * py)
     if rho >= 2.0 and not _is_too_long(work, 0.5 * PI + rho - 2.0, choice):
-        t = image.time * math.atan2(px, -py)
-        u = image.time * (2.0 - rho)
-        v = image.time * wrap_angle(t * image.time + 0.5 * PI - h)
-        count = _add_four(work, count, image, image.right, (t, q, u, v), choice)
+        t = math.atan2(px, -py)
+        v = wrap_angle(t + 0.5 * PI - h)
+        count = _add(work, count, LRSR, (t, -0.5 * PI, 2.0 - rho, v, 0.0), image, choice)
     return count
-
-
-def _add_four(
-    work: PlanningWork,
-    count: int,
-    image: WordSymmetry,
-    last: int,
-    lengths: tuple[float, float, float, float],
-    choice: WordChoice,
-) -> int:
-    """List CCSC or CSCC whose line joins an arc that turns to ``last`` (left or right)."""
-    t, q, u, v = lengths
-    if image.backwards:
-        code = word_code(last, STRAIGHT_LINE, image.right, image.left, UNUSED_PIECE)
-        return _add(work, count, code, (v, u, q, t, 0.0), choice)
-    code = word_code(image.left, image.right, STRAIGHT_LINE, last, UNUSED_PIECE)
-    return _add(work, count, code, (t, q, u, v, 0.0), choice)
 
 
 def _first_of_four(u: float, v: float, x: float, y: float) -> float:
@@ -270,20 +249,28 @@ def _first_of_four(u: float, v: float, x: float, y: float) -> float:
 
 
 def _add(
-    work: PlanningWork, count: int, code: int, lengths: tuple[float, float, float, float, float], choice: WordChoice
+    work: PlanningWork,
+    count: int,
+    code: int,
+    lengths: tuple[float, float, float, float, float],
+    image: WordSymmetry,
+    choice: WordChoice,
 ) -> int:
-    """List one word with its cost [m], its length, changes of direction, and of the wheel, if that is low enough."""
+    """List an image of one word with its cost [m]: length, changes of direction, and of the wheel, if low enough."""
     a, b, c, d, e = lengths
     if _is_too_long(work, abs(a) + abs(b) + abs(c) + abs(d) + abs(e), choice):
         return count
     gear = choice.request.gear
     lock = choice.request.lock
     cost = 0.0
+    used = 0
     for number in range(WORD_SEGMENTS):
-        distance = lengths[number] if abs(lengths[number]) > MIN_WORD_LENGTH else 0.0
+        place = WORD_SEGMENTS - 1 - number if image.is_backwards else number
+        distance = image.time * lengths[place] if abs(lengths[place]) > MIN_WORD_LENGTH else 0.0
         work.word_distance[WORD_SEGMENTS * count + number] = distance * choice.radius
+        turn = image.side * float(turn_of(code, place) - 1)
+        used += math.floor(turn + 1.0) << 2 * number
         if distance != 0.0:
-            turn = float(turn_of(code, number) - 1)
             direction = sign(distance)
             cost += abs(distance) * choice.radius + abs(turn - lock) * STEERING_COST
             if direction * gear < 0.0:
@@ -294,6 +281,6 @@ def _add(
         return count
     if choice.only_cheaper:
         work.values[PlanValue.WORD_LIMIT] = cost
-    work.word_code[count] = code
+    work.word_code[count] = used
     work.word_cost[count] = cost
     return count + 1

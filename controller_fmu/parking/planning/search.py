@@ -8,12 +8,6 @@ from controller_fmu.parking.planning.collision import clearance, free_distance, 
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words
-from controller_fmu.parking.planning.search_tree import (
-    add_node,
-    clear_tree,
-    pop_lowest,
-    push_bucket,
-)
 from controller_fmu.parking.planning.work import (
     BUCKET_COUNT,
     CROWDING_CELLS,
@@ -23,6 +17,10 @@ from controller_fmu.parking.planning.work import (
     PlanCount,
     PlanningWork,
     PlanValue,
+    add_node,
+    clear_tree,
+    pop_lowest,
+    push_bucket,
 )
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
@@ -233,25 +231,19 @@ def generate_successors(
             here = Successor(pose, cost, 0.0, k, node)
             distance = FIRST_SUCCESSOR
             while distance < free - MIN_LENGTH:
-                push_open(work, _drive(here, direction, distance), problem)
+                _push_driven(work, here, direction * distance, problem)
                 distance = distance * SUCCESSOR_RATIO
             if MIN_LENGTH < free < 1.0:
                 for part in range(1, 4):
-                    distance = 0.25 * part * free
-                    push_open(work, _drive(here, direction, distance), problem)
+                    _push_driven(work, here, direction * (0.25 * part * free), problem)
             if free > MIN_LENGTH:
-                push_open(work, _drive(here, direction, free), problem)
+                _push_driven(work, here, direction * free, problem)
 
 
-def _drive(here: Successor, direction: float, distance: float) -> Successor:
-    """Return the child ``distance`` [m] further on."""
-    return Successor(
-        pose_along_arc(here.pose, direction * distance, here.curvature),
-        here.cost + distance,
-        direction * distance,
-        here.curvature,
-        here.parent,
-    )
+def _push_driven(work: PlanningWork, here: Successor, distance: float, problem: SearchProblem) -> None:
+    """Add the child ``distance`` [m] further on, reverse negative."""
+    pose = pose_along_arc(here.pose, distance, here.curvature)
+    push_open(work, Successor(pose, here.cost + abs(distance), distance, here.curvature, here.parent), problem)
 
 
 def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) -> None:

@@ -4,6 +4,7 @@ import math
 
 from controller_fmu.parking.planning.problem import (
     PlanningRequest,
+    SearchGrid,
     SearchProblem,
     SearchRegion,
     SearchResolution,
@@ -55,13 +56,15 @@ def search_region(request: PlanningRequest) -> SearchRegion:
     x = request.start.x - request.goal.x
     y = request.start.y - request.goal.y
     side = max(abs(x), abs(y)) + 2.0 * REGION_MARGIN
-    edge_cell = max(side / EDGE_CELLS, EDGE_CELL)
-    cost_to_go = max(side / COST_TO_GO_CELLS, COST_TO_GO_CELL)
-    edge_cell_count = math.floor(side / edge_cell)
-    cost_to_go_count = math.floor(side / cost_to_go)
-    return SearchRegion(
-        0.5 * (x - side), 0.5 * (y - side), side, edge_cell, edge_cell_count, cost_to_go, cost_to_go_count
-    )
+    edge_grid = search_grid(side, EDGE_CELL, EDGE_CELLS)
+    cost_to_go = search_grid(side, COST_TO_GO_CELL, COST_TO_GO_CELLS)
+    return SearchRegion(0.5 * (x - side), 0.5 * (y - side), side, edge_grid, cost_to_go)
+
+
+def search_grid(side: float, least_cell: float, most: int) -> SearchGrid:
+    """Return a grid over a square of ``side`` [m], of cells of ``least_cell`` [m] or, if those are too many, larger."""
+    cell = max(side / most, least_cell)
+    return SearchGrid(cell, math.floor(side / cell))
 
 
 def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProblem:

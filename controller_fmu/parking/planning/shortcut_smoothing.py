@@ -97,11 +97,6 @@ def pose_at(work: PlanningWork, segment: int) -> Pose:
     return Pose(work.segment_x[segment], work.segment_y[segment], work.segment_heading[segment])
 
 
-def end_of(work: PlanningWork, segment: int) -> Pose:
-    """Return where a segment of the path ends."""
-    return pose_along_arc(pose_at(work, segment), work.segment_length[segment], work.segment_curvature[segment])
-
-
 def joint_cost(distance: float, k: float, next_distance: float, next_k: float, problem: SearchProblem) -> float:
     """Return the cost [m] of a joint: lengths [m], reverse negative, and curvatures [1/m] of the segments at it."""
     cost = abs(next_k - k) / problem.car.max_curvature * STEERING_COST
@@ -129,16 +124,12 @@ def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem)
     return cost
 
 
-def path_cost(work: PlanningWork, problem: SearchProblem) -> float:
-    """Return the cost [m] of the path."""
-    return span_cost(work, 0, work.counts[PlanCount.SEGMENT_COUNT], problem)
-
-
 def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> bool:
     """Replace some segments by the cheapest free word if that is cheaper; returns whether it was."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
     start = pose_at(work, place)
-    end = end_of(work, place + span - 1)
+    last = place + span - 1
+    end = pose_along_arc(pose_at(work, last), work.segment_length[last], work.segment_curvature[last])
     gear = sign(work.segment_length[place - 1]) if place > 0 else 0.0
     lock = work.segment_curvature[place - 1] / problem.car.max_curvature if place > 0 else 0.0
     limit = span_cost(work, place, span, problem) - MIN_GAIN

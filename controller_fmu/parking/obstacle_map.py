@@ -43,6 +43,8 @@ BEHIND_VEHICLE = 0.6
 """A gap of unknown depth is taken to end this far [m] behind the vehicle in it."""
 SLOT_QUADS = 7
 """Rectangles about a slot: neighbours, what is behind it, row and road."""
+QUAD_VERTICES = 4 * SLOT_QUADS
+ECHO_VERTICES = 4 * (MAX_REMEMBERED + MAX_SENSORS)
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
 INSIDE_MARGIN = 0.3
@@ -58,45 +60,39 @@ class Quad(NamedTuple):
     y0: float = 0.0
     x1: float = 0.0
     y1: float = 0.0
-    is_used: bool = False
     slope: float = 0.0
     """A line beside an angled row: y at x0 and x1 is moved by this times the distance from ``pivot``."""
     pivot: float = 0.0
 
 
-class KnownEchoes(NamedTuple):
-    """Unexplained echoes that are kept for planning, and what the sensors measure now."""
-
-    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_REMEMBERED
-    present: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_SENSORS
-
-
-class VehiclePlace(NamedTuple):
-    """Where the vehicle stands, and the road: x free ahead, y to its other side, in the row's frame."""
-
-    pose: Pose
-    road: Pose
-
-
 def obstacle_map(
     landmarks: tuple[Landmark, ...],
     slot: SlotCandidate,
-    echoes: KnownEchoes,
     outline: VehicleOutline,
-    place: VehiclePlace,
+    vehicle: Pose,
+    road: Point,
     mapping: MappingParams,
 ) -> ObstacleMap:
-    """Return the polygons around a slot; they keep ``START_CLEARANCE`` from the outline of the vehicle."""
-    vehicle = place.pose
-    quads = _slot_quads(slot, outline, place.road)
+    """Return the polygons around a slot; they keep ``START_CLEARANCE`` from the outline of the vehicle.
+
+    The road is free up to x ahead, and y to its other side, in the row's frame.
+    """
+    quads = _slot_quads(slot, outline, road)
     quads = tuple(_beside_vehicle(quad, slot, outline, vehicle) for quad in quads)
     return ObstacleMap(
-        tuple(
-            _landmark_vertex(landmarks[number // 2 if number < LANDMARK_VERTICES else 0], number, mapping)
-            if number < LANDMARK_VERTICES
-            else _quad_vertex(quads, echoes, slot, number - LANDMARK_VERTICES)
-            for number in range(LOCAL_VERTICES)
-        )
+        tuple(_landmark_vertex(landmarks[number // 2], number, mapping) for number in range(LANDMARK_VERTICES))
+        + tuple(_quad_vertex(quads[number // 4], number, slot) for number in range(QUAD_VERTICES))
+        + (Vertex(),) * (LOCAL_VERTICES - LANDMARK_VERTICES - QUAD_VERTICES)
+    )
+
+
+def with_echoes(obstacles: ObstacleMap, echoes: tuple[EchoObstacle, ...]) -> ObstacleMap:
+    """Return the polygons around a slot with those of the echoes, for which ``obstacle_map`` leaves room."""
+    before = LANDMARK_VERTICES + QUAD_VERTICES
+    return ObstacleMap(
+        obstacles.vertices[:before]
+        + tuple(_echo_vertex(echoes[number // 4], number) for number in range(ECHO_VERTICES))
+        + obstacles.vertices[before + ECHO_VERTICES :]
     )
 
 
@@ -120,7 +116,7 @@ def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -
 
 def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> Quad:
     """Return a rectangle without what the vehicle stands in: cut on the side on which the least is lost."""
-    if not quad.is_used or quad.slope != 0.0:
+    if quad.slope != 0.0:
         return quad
     low = Point(min(quad.x0, quad.x1) - START_CLEARANCE, min(quad.y0, quad.y1) - START_CLEARANCE)
     high = Point(max(quad.x0, quad.x1) + START_CLEARANCE, max(quad.y0, quad.y1) + START_CLEARANCE)
@@ -186,39 +182,34 @@ def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) ->
     return Vertex(point.x, point.y, 1 + number // 2)
 
 
-def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandidate, number: int) -> Vertex:
-    """Return a vertex of the quads about the slot, then of the remembered echoes, then of what is measured now."""
-    index = number // 4
+def _quad_vertex(quad: Quad, number: int, slot: SlotCandidate) -> Vertex:
+    """Return a vertex of a rectangle about the slot, by its ``number`` among those of all of them."""
+    if slot.type == SlotType.NONE:
+        return Vertex()
     corner = number % 4
-    if index < SLOT_QUADS:
-        quad = quads[index if index < SLOT_QUADS else 0]
-        if not quad.is_used:
-            return Vertex()
-        x = quad.x0 if corner == 0 or corner == 3 else quad.x1
-        y = (quad.y0 if corner < 2 else quad.y1) + slot.row.side * quad.slope * (x - quad.pivot)
-        point = point_from_frame(x, slot.row.side * y, slot.row.frame)
-        return Vertex(point.x, point.y, MAX_LANDMARKS + 1 + index)
-    at = index - SLOT_QUADS
-    if at >= MAX_REMEMBERED + MAX_SENSORS:
+    x = quad.x0 if corner == 0 or corner == 3 else quad.x1
+    y = (quad.y0 if corner < 2 else quad.y1) + slot.row.side * quad.slope * (x - quad.pivot)
+    point = point_from_frame(x, slot.row.side * y, slot.row.frame)
+    return Vertex(point.x, point.y, MAX_LANDMARKS + 1 + number // 4)
+
+
+def _echo_vertex(echo: EchoObstacle, number: int) -> Vertex:
+    """Return a vertex of the square about an unexplained echo, or of the side that another one is of."""
+    if not echo.is_present:
         return Vertex()
-    echo = echoes.remembered[min(max(at, 0), MAX_REMEMBERED - 1)]
-    if at >= MAX_REMEMBERED:
-        echo = echoes.present[min(at - MAX_REMEMBERED, MAX_SENSORS - 1)]
-    if not echo.is_present or (at >= MAX_REMEMBERED and echo.is_unexplained):
-        return Vertex()
+    corner = number % 4
+    polygon = MAX_LANDMARKS + 1 + SLOT_QUADS + number // 4
     if not echo.is_unexplained:
         end = side_start(echo) if corner < 2 else side_end(echo)
-        return Vertex(end.x, end.y, MAX_LANDMARKS + 1 + index)
+        return Vertex(end.x, end.y, polygon)
     half = 0.5 * ECHO_SIZE
     dx = -half if corner == 0 or corner == 3 else half
     dy = -half if corner < 2 else half
-    return Vertex(echo.x + dx, echo.y + dy, MAX_LANDMARKS + 1 + index)
+    return Vertex(echo.x + dx, echo.y + dy, polygon)
 
 
-def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tuple[Quad, ...]:
+def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Point) -> tuple[Quad, ...]:
     """Return neighbours, end, row beyond both, the road's other side and its end ahead."""
-    if slot.type == SlotType.NONE:
-        return (Quad(),) * SLOT_QUADS
     parallel = slot.type == SlotType.PARALLEL
     length = CAR_LENGTH if parallel else CAR_WIDTH
     body = CAR_WIDTH if parallel else CAR_LENGTH
@@ -232,13 +223,13 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Pose) -> tup
     ahead = max(end, b.front + body)
     far = road.y - ROW_EXTENSION
     return (
-        Quad(first, a.front, a.end, behind, True),
-        Quad(b.start, b.front, last, ahead, True),
-        Quad(a.end, end, b.start, end + ROW_EXTENSION, True),
-        Quad(first - ROW_EXTENSION, a.front, first, behind, True, slot.slope, a.end),
-        Quad(last, b.front, last + ROW_EXTENSION, ahead, True, slot.slope, b.start),
-        Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, True, slot.slope, road.x),
-        Quad(road.x, road.y, road.x + ROW_EXTENSION, min(a.front, b.front), True),
+        Quad(first, a.front, a.end, behind),
+        Quad(b.start, b.front, last, ahead),
+        Quad(a.end, end, b.start, end + ROW_EXTENSION),
+        Quad(first - ROW_EXTENSION, a.front, first, behind, slot.slope, a.end),
+        Quad(last, b.front, last + ROW_EXTENSION, ahead, slot.slope, b.start),
+        Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, slot.slope, road.x),
+        Quad(road.x, road.y, road.x + ROW_EXTENSION, min(a.front, b.front)),
     )
 
 

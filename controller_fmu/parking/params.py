@@ -4,7 +4,7 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
-from controller_fmu.common.params import LimitParams, Longitudinal, ThresholdParams
+from controller_fmu.common.params import HOUSE, LimitParams, Longitudinal, ThresholdParams
 from controller_fmu.parking.following.params import FollowingParams
 from controller_fmu.parking.geometry.polygons import MAP_VERTICES, Vertex
 from controller_fmu.parking.map.params import MappingParams
@@ -13,8 +13,6 @@ from controller_fmu.parking.slots.params import SlotParams
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import ANYWHERE, Pose
-
-HOUSE = "project default; the source states none"
 
 
 class PlanningParams(NamedTuple):

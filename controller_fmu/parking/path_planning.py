@@ -12,7 +12,6 @@ from controller_fmu.parking.geometry.frames import planar_distance, point_to_fra
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
-from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.visibility import predict_range
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.predicted_range import predict_range_to_point
@@ -25,12 +24,11 @@ from controller_fmu.parking.measurement.sensor import (
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.obstacle_map import (
-    KnownEchoes,
-    VehiclePlace,
     away_from_vehicle,
     echo_away_from_vehicle,
     is_on_map,
     obstacle_map,
+    with_echoes,
     without_explained,
     without_inside,
 )
@@ -53,6 +51,7 @@ from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, kerb_shift, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.slot_filter import slot_of_filter
 from controller_fmu.parking.state import ParkingMemory, SearchProgress
+from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -95,10 +94,9 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
         return memory
     views = tuple(_view_at_rest(number, memory, inputs, params) for number in range(MAX_SENSORS))
     remembered = tuple(_still_there(echo, views) for echo in memory.perception.remembered)
-    memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
     echoes = tuple(_without_passed(memory.perception.echoes[number], views[number]) for number in range(MAX_SENSORS))
-    memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
-    landmarks = tuple(_contradict_by_all(item, views, params) for item in memory.perception.local_map.landmarks)
+    memory = memory._replace(perception=memory.perception._replace(remembered=remembered, echoes=echoes))
+    landmarks = tuple(_contradict_at_rest(item, views, params) for item in memory.perception.local_map.landmarks)
     return with_landmarks(memory, landmarks)
 
 
@@ -131,19 +129,13 @@ def _still_there(echo: EchoObstacle, views: tuple[ViewAtRest, ...]) -> EchoObsta
     return EchoObstacle() if is_gone else echo
 
 
-def _contradict_by_all(landmark: Landmark, views: tuple[ViewAtRest, ...], params: ParkingParams) -> Landmark:
-    """Return a landmark after the readings of all sensors."""
+def _contradict_at_rest(landmark: Landmark, views: tuple[ViewAtRest, ...], params: ParkingParams) -> Landmark:
+    """Return a landmark after the readings of all sensors; none after enough that measured through it."""
     for view in views:
-        landmark = contradict_at_rest(landmark, view.sensor, view.limit, params)
+        if landmark.type != LandmarkType.NONE and predict_range(view.sensor, landmark).distance <= view.limit:
+            count = landmark.contradictions + 1
+            landmark = Landmark() if count >= params.mapping.contradictions else landmark._replace(contradictions=count)
     return landmark
-
-
-def contradict_at_rest(landmark: Landmark, sensor: SensorPose, limit: float, params: ParkingParams) -> Landmark:
-    """Return a landmark after a sensor measured at least ``limit`` [m]; none after enough of that."""
-    if landmark.type == LandmarkType.NONE or predict_range(sensor, landmark).distance > limit:
-        return landmark
-    count = landmark.contradictions + 1
-    return Landmark() if count >= params.mapping.contradictions else landmark._replace(contradictions=count)
 
 
 def continue_plan(
@@ -212,17 +204,11 @@ def is_near(pose: Pose, goal: Pose, along: float, across: float, heading: float)
 
 
 def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> SlotCandidate:
-    """Return the slot as the map has it now, seen by a vehicle at ``pose``."""
+    """Return the slot as a vehicle at ``pose`` knows it now: by all echoes of it, and by what else is mapped in it."""
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
-    return correct_slot_by_map(memory.search, landmarks, outline, params.mapping)
-
-
-def correct_slot_by_map(
-    search: SearchProgress, landmarks: tuple[Landmark, ...], outline: VehicleOutline, mapping: MappingParams
-) -> SlotCandidate:
-    """Return the slot as it is known now: by all echoes of it, and by what else has been mapped in it."""
-    return correct_slot(slot_of_filter(search.slot, search.slot_filter, outline), landmarks, outline, mapping)
+    by_echoes = slot_of_filter(memory.search.slot, memory.search.slot_filter, outline)
+    return correct_slot(by_echoes, landmarks, outline, params.mapping)
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
@@ -268,21 +254,16 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     memory = with_landmarks(memory, landmarks)
     if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
-    slot = correct_slot_by_map(memory.search, landmarks, outline, params.mapping)
-    road = _free_road(memory, inputs, params)
+    slot = slot_in_map(memory, pose, params)
     beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
     if memory.plan.is_relaxed:
         beside = tuple(without_inside(landmark, slot) for landmark in beside)
-    place = VehiclePlace(pose, road)
-    mapped = obstacle_map(beside, slot, KnownEchoes(), outline, place, params.mapping)
+    mapped = obstacle_map(beside, slot, outline, pose, _free_road(memory, params), params.mapping)
     half_angle = params.car.ultrasonic.half_angle
     before = memory.perception.remembered
     remembered = tuple(without_explained(echo, mapped, half_angle, params.monitor) for echo in before)
     memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
-    echoes = KnownEchoes(remembered, _present_echoes(memory, outline, pose))
-    obstacles = obstacle_map(beside, slot, echoes, outline, place, params.mapping)
-    goal = goal_pose(slot, outline, params.slot)
-    memory = _with_plan(memory, obstacles, goal, inputs, params)
+    memory = _with_plan(memory, mapped, goal_pose(slot, outline, params.slot), inputs, params)
     least = least_depth(slot, outline, params.slot)
     if slot.depth < least:
         known = slot_of_filter(memory.search.slot, memory.search.slot_filter, outline).depth
@@ -290,11 +271,6 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         reason = Reason.BLOCKED if stands_in_it else Reason.SLOT_TOO_SHALLOW
         memory = without_path(memory, reason, inputs, params)
     return memory
-
-
-def _present_echoes(memory: ParkingMemory, outline: VehicleOutline, pose: Pose) -> tuple[EchoObstacle, ...]:
-    """Return what the sensors measure now as obstacles clear of the vehicle: the monitor may not let it nearer."""
-    return tuple(echo_away_from_vehicle(echo, outline, pose) for echo in memory.perception.echoes)
 
 
 def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> ParkingMemory:
@@ -314,9 +290,7 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
         )
         for item in landmarks
     )
-    echoes = KnownEchoes(memory.perception.remembered, _present_echoes(memory, outline, pose))
-    place = VehiclePlace(pose, Pose())
-    local = obstacle_map(beside, SlotCandidate(), echoes, outline, place, params.mapping)
+    local = obstacle_map(beside, SlotCandidate(), outline, pose, Point(0.0, 0.0), params.mapping)
     if memory.strategy == Strategy.PULL_OUT:
         return _with_plan(memory, local, memory.plan.way_out, inputs, params)
     goal = params.target
@@ -346,13 +320,19 @@ def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 
 
 def _with_plan(
-    memory: ParkingMemory, obstacles: ObstacleMap, goal: Pose, inputs: ParkingSystemInput, params: ParkingParams
+    memory: ParkingMemory, mapped: ObstacleMap, goal: Pose, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ParkingMemory:
     """Return the memory with a request for a path to ``goal``; after ``max_plans`` there is one a manoeuvre.
 
     A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself.
+    What the sensors measure now of what is ``mapped`` is kept clear of, too: the monitor may not let it nearer.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    present = tuple(
+        EchoObstacle() if echo.is_unexplained else echo_away_from_vehicle(echo, outline, inputs.odometry)
+        for echo in memory.perception.echoes
+    )
+    obstacles = with_echoes(mapped, memory.perception.remembered + present)
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
     has_map = memory.strategy == Strategy.POSE
     request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, has_map)
@@ -374,7 +354,7 @@ def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: Ve
     )
 
 
-def _free_road(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> Pose:
+def _free_road(memory: ParkingMemory, params: ParkingParams) -> Point:
     """Return how far the road is taken to be free in the row's frame: x ahead, y on its other side."""
     search = memory.search
     car = params.car
@@ -383,4 +363,4 @@ def _free_road(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parkin
     reach = car.ultrasonic.max_range
     ahead = car.wheelbase + car.front_overhang + reach
     across = (0.5 * car.width + reach) * math.sqrt(1.0 + slot.slope * slot.slope)
-    return Pose(at.x + ahead, slot.row.side * (at.y + slot.slope * ahead) - across, 0.0)
+    return Point(at.x + ahead, slot.row.side * (at.y + slot.slope * ahead) - across)

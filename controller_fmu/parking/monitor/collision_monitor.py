@@ -139,14 +139,8 @@ def free_by_map(
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to a confirmed landmark; ``NO_LIMIT``: farther."""
     free = NO_LIMIT
-    outline = sweep.outline
-    radius = math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
-    reach = sweep.horizon + radius + outline.half_length
     for landmark in landmarks:
-        farthest = reach + max(landmark.end, -landmark.start)
-        dx = landmark.x - motion.pose.x
-        dy = landmark.y - motion.pose.y
-        if is_confirmed(landmark, mapping) and dx * dx + dy * dy < farthest * farthest:
+        if is_confirmed(landmark, mapping):
             a = start_point(landmark)
             free = min(free, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
     return free

@@ -2,9 +2,8 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.params import HOUSE
 from modelkit.signal import Signal
-
-HOUSE = "project default; the source states none"
 
 
 class MonitorParams(NamedTuple):

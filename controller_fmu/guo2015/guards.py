@@ -4,7 +4,7 @@ from controller_fmu.common.chart import bit
 from controller_fmu.guo2015.chart import Guard
 from controller_fmu.guo2015.legs import Tracking, point_of_leg
 from controller_fmu.guo2015.params import GuoSystem, GuoSystemParams
-from controller_fmu.guo2015.path import distance_to_end, reference_at
+from controller_fmu.guo2015.path import distance_to_end
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath
 from controller_fmu.guo2015.prompts import stopping_distance
@@ -30,21 +30,23 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
     )
 
 
-def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: GuoSystemParams) -> int:
+def way_guards(
+    leg: int, tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: GuoSystemParams
+) -> int:
     """Return the bits that say the car left the path or reached the end of its leg."""
     limit = params.guo2015.threshold
     points = params.system == GuoSystem.NTBPTCWPT
     left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
-    to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
     q2 = point_of_leg(GuoPhase.TO_Q2, path, params.guo2015)
     at_q1 = tracking.ahead <= 0.0
     resumed = within(tracking.lateral_error, tracking.heading_error, limit.resume_lateral, limit.resume_heading)
     share = limit.moving_share
     right = within(pose.y, pose.heading, share * limit.park_lateral, share * limit.park_heading)
     stop = stopping_distance(speed, params.guo2015.prompting)
+    at_end = leg == GuoPhase.PATH_TRACKING and distance_to_end(path, tracking.reference) <= stop
     return (
         bit(Guard.OFF_PATH, points and left)
-        | bit(Guard.PATH_END, to_end <= stop)
+        | bit(Guard.PATH_END, at_end)
         | bit(Guard.PAST_Q2, pose.x > q2.x or pose.y > q2.y)
         | bit(Guard.AT_Q1_RIGHT, at_q1 and resumed)
         | bit(Guard.AT_Q1_WRONG, at_q1 and not resumed)

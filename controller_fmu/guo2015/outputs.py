@@ -23,6 +23,7 @@ def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
     """Return the outputs that hold until the next sample."""
     active = is_parking(state.phase)
     frame = state.plan.frame
+    reference = state.tracking.reference
     return GuoOutput(
         steering_wheel_request=state.request,
         steering_active=active,
@@ -32,7 +33,7 @@ def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
         phase=state.phase,
         reason=state.reason,
         manoeuvres=state.manoeuvres,
-        reference=to_world(state.tracking.reference, frame),
+        reference=to_world(Pose(reference.x, reference.y, reference.heading), frame),
         lateral_error=state.tracking.lateral_error,
         heading_error=state.tracking.heading_error,
         path=arc_plan(state.plan),

@@ -22,12 +22,12 @@ LARGEST_SINE = 0.996
 class Reference(NamedTuple):
     """The point of the path that the car should be at."""
 
-    x: float
-    y: float
-    heading: float
-    curvature: float
+    x: float = 0.0
+    y: float = 0.0
+    heading: float = 0.0
+    curvature: float = 0.0
     """y'' / (1 + y'^2)^(3/2) [1/m]: left positive."""
-    piece: int
+    piece: int = FIRST_ARC
 
 
 def reference_at(path: TwoArcPath, x: float, latched: int) -> Reference:

@@ -17,7 +17,7 @@ from controller_fmu.guo2015.chart import Guard, transition
 from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_guards, within
 from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.params import GuoSystemParams
-from controller_fmu.guo2015.path import SECOND_ARC, reference_at
+from controller_fmu.guo2015.path import SECOND_ARC
 from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase, motion_expectation
 from controller_fmu.guo2015.planner import Plan, plan
 from controller_fmu.guo2015.prompts import (
@@ -66,6 +66,9 @@ class Sample(NamedTuple):
     pose: Pose
     """In the slot's frame."""
     monitor: MonitorState
+    leg: int
+    """What is driven, or was before the car comes to a stop."""
+    tracking: Tracking
     dt_ns: int
 
 
@@ -95,16 +98,16 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
     monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
     leg = state.driven if state.phase == GuoPhase.STOP else state.leg
     tracking = track(leg, pose, planned.path, state.piece, params)
-    now = Sample(inputs, planned, pose, monitor, dt_ns)
-    reason = _reason(state, now, tracking, params)
-    guards = _guards(state, now, tracking, reason, params)
+    now = Sample(inputs, planned, pose, monitor, leg, tracking, dt_ns)
+    reason = _reason(state, now, params)
+    guards = _guards(state, now, reason, params)
     phase, next_leg = transition(state.phase, state.leg, guards)
     if is_over(phase):
         return _terminate(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
     return _enter_phase(state, now, phase, next_leg, params)
 
 
-def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemParams) -> int:
+def _reason(state: GuoState, now: Sample, params: GuoSystemParams) -> int:
     limit = params.threshold
     expected = motion_expectation(state.phase)
     reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.manoeuvres, params)
@@ -112,7 +115,7 @@ def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemP
         return reason
     if not now.planned.path.found:
         return Reason.NO_PATH
-    if abs(tracking.lateral_error) > limit.abort_lateral_error:
+    if abs(now.tracking.lateral_error) > limit.abort_lateral_error:
         return Reason.LEFT_PATH
     straight = (
         state.phase == GuoPhase.STRAIGHTEN and abs(now.inputs.steering_wheel_angle) <= limit.steering_angle_reached
@@ -122,7 +125,7 @@ def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemP
     return Reason.NONE
 
 
-def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, params: GuoSystemParams) -> int:
+def _guards(state: GuoState, now: Sample, reason: int, params: GuoSystemParams) -> int:
     wheel = now.inputs.steering_wheel_angle
     speed = now.inputs.measured_speed
     path = now.planned.path
@@ -132,7 +135,7 @@ def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, param
         | bit(Guard.FAULT, reason != Reason.NONE)
         | bit(Guard.PLANNED, path.found and abs(speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.steering_angle_reached)
-        | way_guards(tracking, now.pose, path, speed, params)
+        | way_guards(now.leg, now.tracking, now.pose, path, speed, params)
         | standing
     )
 
@@ -144,7 +147,9 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
     driven = phase if direction != 0 else state.driven
     tracked = driven if phase == GuoPhase.STOP else leg
     piece = SECOND_ARC if back_on_path else state.piece
-    tracking = track(tracked, now.pose, now.planned.path, piece, params)
+    tracking = now.tracking
+    if tracked != now.leg or piece != state.piece:
+        tracking = track(tracked, now.pose, now.planned.path, piece, params)
     request = _wheel_request(phase, tracking, now.planned, params)
     swing = _swing(state, phase, request, now, params)
     begun = state.phase != GuoPhase.STANDBY
@@ -157,7 +162,7 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
         manoeuvres=state.manoeuvres + 1 if turned else state.manoeuvres,
         direction=direction if direction != 0 else state.direction,
         running_ns=state.running_ns + counted,
-        piece=tracking.piece,
+        piece=tracking.reference.piece,
         plan=now.planned,
         tracking=tracking,
         request=request,
@@ -182,12 +187,11 @@ def _advice(
     speed = now.inputs.measured_speed
     advice = swing
     if last_phase == GuoPhase.PATH_TRACKING:
-        path = now.planned.path
-        reference = reference_at(path, now.pose.x, tracking.piece)
-        advice = min(path_speed(path, reference, speed, now.monitor.wheel.steering, params), swing)
+        advice = path_speed(now.planned.path, tracking.reference, speed, now.monitor.wheel.steering, params)
     else:
         left = -DIRECTION_OF_PHASE[last_phase] * tracking.ahead
-        advice = min(point_speed(left, speed, params.guo2015.prompting), swing)
+        advice = point_speed(left, speed, params.guo2015.prompting)
+    advice = min(advice, swing)
     return advice if driving else min(state.advice, advice)
 
 

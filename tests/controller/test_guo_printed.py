@@ -126,7 +126,7 @@ def test_thresholds_are_those_the_page_states(name: str, chosen: float) -> None:
 
 
 def raised(path: TwoArcPath, pose: Pose, tracking: Tracking = ON_PATH, speed: float = 0.0, **kept: Any) -> set[Guard]:
-    bits = way_guards(tracking, pose, path, speed, PARAMS._replace(**kept))
+    bits = way_guards(GuoPhase.PATH_TRACKING, tracking, pose, path, speed, PARAMS._replace(**kept))
     return {guard for guard in Guard if (bits >> guard) & 1}
 
 
@@ -176,9 +176,10 @@ def test_stop_is_prompted_ahead_of_q3_by_the_way_to_stop(speed: float, path: Two
     stop = 0.3 * abs(speed) + speed**2 / (2.0 * 2.0)
     assert Guard.AT_Q3 in raised(path, Pose(stop - E, 0.0, 0.0), speed=speed)
     assert Guard.AT_Q3 not in raised(path, Pose(stop + E, 0.0, 0.0), speed=speed)
-    near, far = (5.4993 * math.sin((stop + off) / 5.4993) for off in (-1e-3, 1e-3))
-    assert Guard.PATH_END in raised(path, Pose(near, 0.0, 0.0), speed=speed)
-    assert Guard.PATH_END not in raised(path, Pose(far, 0.0, 0.0), speed=speed)
+    for off in (-1e-3, 1e-3):
+        at = Pose(5.4993 * math.sin((stop + off) / 5.4993), 0.0, 0.0)
+        tracking = track(GuoPhase.PATH_TRACKING, at, path, FIRST_ARC, PARAMS)
+        assert (Guard.PATH_END in raised(path, at, tracking, speed)) == (off < 0.0)
 
 
 @pytest.mark.parametrize(("x", "past"), [(2.5 - E, False), (2.5 + E, True)])

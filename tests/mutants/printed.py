@@ -21,7 +21,7 @@ PRINTED: tuple[tuple[str, str, str], ...] = (
     ("guo2015/params.py", "Role.FIXED] = (\n        2.5\n", "* 1.0 - 0.1"),
     ("guo2015/params.py", "Role.FIXED] = (\n        5.5\n", "- 0.1"),
     ("guo2015/guards.py", "bit(Guard.AT_Q3, pose.x <= stop)", "bit(Guard.AT_Q3, pose.x <= 0.0)"),
-    ("guo2015/guards.py", "bit(Guard.PATH_END, to_end <= stop)", "bit(Guard.PATH_END, to_end <= 0.0)"),
+    ("guo2015/guards.py", "(path, tracking.reference) <= stop", "(path, tracking.reference) <= 0.0"),
     ("guo2015/guards.py", "pose.x > q2.x or pose.y > q2.y", "pose.x > q2.x and pose.y > q2.y"),
     ("guo2015/guards.py", "abs(lateral) <= lateral_limit and", "abs(lateral) <= lateral_limit or"),
     ("guo2015/path_tracking.py", "feedforward = reference.curvature / (c_r * c_r * c_r)", "* c_r"),

@@ -43,8 +43,8 @@ def compile_lane_rows(
     code: StudyCode,
     alone: Rows,
 ) -> Rows | None:
-    """Return the runs of a study's own ``code`` in lanes; None where no model has a form in lanes, or no
-    compiler knows vectors.
+    """Return the runs of a study's own ``code`` in lanes; None where no model has a form in lanes, no compiler
+    knows vectors, or the platform's sine is another one.
 
     A model without such a form has an instance for each lane. ``alone``: the same runs one after the other, which
     makes them where there are few. The runs have no faults.
@@ -53,8 +53,10 @@ def compile_lane_rows(
     if not any(libraries):
         return None
     runner = ctypes.CDLL(str(lane_batch_library(code.options)))
-    runner.lane_rows.restype = Long
+    runner.lane_rows.restype = runner.lanes_agree.restype = Long
     runner.lane_rows.argtypes = [Pointer, Pointer, Long, Pointer, Pointer, Pointer]
+    if not runner.lanes_agree():
+        return None
     tables = BatchTables(models, ending, kept, (), code)
     lanes = tables.array(Pointer, [library and library.lane_library() for library in libraries])
 

@@ -9,7 +9,7 @@ from typing import Any
 from fmus.compiler import members
 from fmus.compiler.slicing import Slice
 from fmus.native.compilers import can_compile, find_compiler
-from fmus.native.library_cache import cache_library, own_files
+from fmus.native.library_cache import cache_library, lane_headers, own_files
 from fmus.native.platforms import LINUX, is_known
 from fmus.native.sources import translate_model
 from fmus.native.tables import KINDS
@@ -88,7 +88,7 @@ def load_lanes(model: Model, live: Slice, options: tuple[str, ...]) -> Any:
     if model.store is not None:
         raise NoLanesError(f"{model.name} has work arrays")
     unit = f"{model.name}_lanes_library.c"
-    files = model_files(model, live) | own_files("lane_library.c", "lane_library.h", "lanes.h", "lane_math.h")
+    files = model_files(model, live) | own_files("lane_library.c") | lane_headers()
     files |= {
         f"{model.name}_lanes.c": lanes_of(translate_model(model, live), model.outputs.__name__, live),
         unit: LANES_UNIT.format(name=model.name),

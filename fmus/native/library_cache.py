@@ -11,6 +11,7 @@ from fmus.cache_paths import LIBRARY_FOLDER
 from fmus.locks import cache_file
 from fmus.native.compilers import Compiler, find_compiler
 from fmus.native.platforms import PLATFORMS, CompileTarget, host, host_target
+from fmus.native.sines import sine_table
 
 C_FILES = Path(__file__).parent / "c"
 
@@ -27,8 +28,13 @@ def batch_library() -> Path:
 
 def lane_batch_library(options: tuple[str, ...]) -> Path:
     """Return the path of the compiled runs in lanes, for this processor. Raises as :func:`batch_library`."""
-    files = own_files("lane_batch.c", "batch.h", "faults.h", "library.h", "lane_library.h", "lanes.h", "lane_math.h")
+    files = own_files("lane_batch.c", "batch.h", "faults.h", "library.h") | lane_headers()
     return cache_library("lane_batch", "lane_batch.c", files, options=options)
+
+
+def lane_headers() -> dict[str, str]:
+    """Return the headers of C in lanes."""
+    return {**own_files("lane_library.h", "lanes.h", "lane_math.h"), "lane_sines.h": sine_table()}
 
 
 def cache_library(

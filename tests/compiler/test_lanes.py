@@ -18,7 +18,7 @@ from fmus.compiler.slicing import Slice
 from fmus.lane_rows import compile_lane_rows, has_lanes
 from fmus.native.compilers import CompilerError, find_compiler
 from fmus.native.libraries import load_lanes
-from fmus.native.library_cache import own_files
+from fmus.native.library_cache import lane_headers
 from fmus.study_slices import StudyCode
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -272,25 +272,23 @@ int main(int count, char **arguments) {
                                      1.5707963267948966, 3.141592653589793, -0.4375, 2.4375, 1.1875, 0x1p-27};
     const long vectors = atol(arguments[count - 1]);
     long sine = 0, cosine = 0, tangent = 0, arc = 0;
-    LaneCall call;
+    static LaneCall calls[LANE_FUNCTIONS + 4];
     for (long i = 0; i < vectors; i++) {
         const double size = i % 4 == 0 ? 2000.0 : i % 4 == 1 ? 4.0 : 1.0;
         lane_d x;
         lane_i live = LANE_INT(-1);
-        memset(&call, 255, sizeof call);
+        memset(calls, 255, sizeof calls);
         LANE_EACH(l) x[l] = (2.0 * uniform() - 1.0) * (i % 4 == 3 ? exp(-50.0 * uniform()) : size);
         if (i < 16) LANE_EACH(l) x[l] = special[(i + l) % 16];
         live[i % LANES] = 0;
-        const lane_d a = lane_sincos(&call, live, x), b = call.other;
-        memset(&call, 255, sizeof call);
-        const lane_d t = lane_tan(&call, live, x);
-        memset(&call, 255, sizeof call);
-        const lane_d c = lane_atan(&call, live, x);
+        const LaneCall turn = *lane_sincos_call(calls, 0, live, x);
+        const lane_d t = lane_tan(calls, 1, live, x), c = lane_atan(calls, 2, live, x);
+        const lane_d again = lane_tan(calls, 3, live, i % 2 ? x : x + 1.0);
         LANE_EACH(l) {
             if (!live[l]) continue;
-            sine += differs(a[l], sin(x[l]));
-            cosine += differs(b[l], cos(x[l]));
-            tangent += differs(t[l], tan(x[l]));
+            sine += differs(turn.result[l], sin(x[l]));
+            cosine += differs(turn.other[l], cos(x[l]));
+            tangent += differs(t[l], tan(x[l])) + differs(again[l], tan(i % 2 ? x[l] : x[l] + 1.0));
             arc += differs(c[l], atan(x[l]));
         }
     }
@@ -302,7 +300,7 @@ int main(int count, char **arguments) {
 
 @pytest.mark.parametrize("options", OPTIONS)
 def test_functions_have_the_bits_of_the_platform(options: Any, tmp_path: Path) -> None:
-    for name, text in {**own_files("lanes.h", "lane_math.h"), "maths.c": MATHS}.items():
+    for name, text in {**lane_headers(), "maths.c": MATHS}.items():
         (tmp_path / name).write_text(text)
     find_compiler("zig").run(["-std=gnu99", "-ffp-contract=off", *options, "-o", "maths", "maths.c", "-lm"], tmp_path)
     done = subprocess.run([str(tmp_path / "maths"), "40000"], capture_output=True, text=True, check=True)
@@ -314,6 +312,15 @@ def test_no_lanes_without_a_compiler_that_knows_vectors(monkeypatch: pytest.Monk
         raise CompilerError("unknown type")
 
     monkeypatch.setattr("fmus.native.libraries.load_lanes", refuse)
+    model = Model("Laned", "a model", here, State, Parameters, Inputs, Outputs, initialize, step, 0.01, 1.0)
+    code = StudyCode({"Laned": Slice(frozenset({"sum"}), None)}, OPTIONS[0])
+    kept = [RecordedSignal("last", "Laned.sum")]
+    assert compile_lane_rows({"Laned": model}, None, kept, code, lambda *given: None) is None
+
+
+def test_no_lanes_where_the_platform_has_another_sine(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = lane_headers()["lane_sines.h"]
+    monkeypatch.setattr("fmus.native.library_cache.sine_table", lambda: table.replace("0x1.fffeaaaaeeeefp-8", "0x1p-7"))
     model = Model("Laned", "a model", here, State, Parameters, Inputs, Outputs, initialize, step, 0.01, 1.0)
     code = StudyCode({"Laned": Slice(frozenset({"sum"}), None)}, OPTIONS[0])
     kept = [RecordedSignal("last", "Laned.sum")]

@@ -355,7 +355,7 @@ class Expressions:
     def call(self) -> str:
         """Return the place of what is known of one more call of a function of C's library."""
         self.calls.append(len(self.calls))
-        return f"&calls[{self.calls[-1]}]"
+        return f"calls, {self.calls[-1]}"
 
     def _literal(self, node: Any) -> LaneValue:
         kind = kind_of_type(node.type, self.file.lengths)

@@ -95,8 +95,9 @@ class Function:
             stays = changed != ANYTHING and not (changed and re.search(rf"\b{changed}\b", text))
             if len(names | (following.get(text, set()) if stays else set())) == 2 and text not in self.write.turns:
                 call = self._fresh("turn")
-                self._line(f"LaneCall *const {call} = {self.write.call()};")
-                self._line(f"(void)lane_sincos({call}, {self.mask}, {text});")
+                self._line(
+                    f"const LaneCall *const {call} = lane_sincos_call({self.write.call()}, {self.mask}, {text});"
+                )
                 self.write.turns[text] = f"(*{call})"
                 if stays:
                     self.next_turns[text] = f"(*{call})"

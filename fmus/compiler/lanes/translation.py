@@ -41,7 +41,7 @@ def lanes_of(code: Translation, outputs: str, live: Slice) -> str:
         lines += ["", "typedef struct {", *body, f"}} {name};"]
     for name in file.structs:
         lines += _struct_functions(file, name)
-    lines += ["", f"#define LANE_CALLS {max(1, len(calls))}", "", *constants, ""]
+    lines += ["", f"#define LANE_CALLS (LANE_FUNCTIONS + {len(calls)})", "", *constants, ""]
     lines += [f"{signature(file, name)};" for name in file.functions]
     return "\n".join([*lines, *functions, ""])
 

@@ -104,25 +104,51 @@ static inline lane_d lane_fmod(lane_d x, lane_d y) {
     return r;
 }
 
-/* One call of a function: its last argument and what it gave, for many a call has the same one at each step. */
+/* A call of a function: its argument and what it gave. */
 typedef struct {
     lane_d x, result, other;
 } LaneCall;
 
-static inline int lane_is_known(const LaneCall *call, lane_i live, lane_d x) {
-    return !lane_any(live & (((lane_i)call->x ^ (lane_i)x) != 0));
-}
+/* The calls that an instance remembers: the last one of each function, then the last one at each place that has one. */
+enum {
+    LANE_LAST_sin, LANE_LAST_cos, LANE_LAST_tan, LANE_LAST_atan, LANE_LAST_sincos,
+    LANE_LAST_asin, LANE_LAST_acos, LANE_LAST_sinh, LANE_LAST_cosh, LANE_LAST_tanh, LANE_LAST_asinh, LANE_LAST_acosh,
+    LANE_LAST_atanh, LANE_LAST_exp, LANE_LAST_expm1, LANE_LAST_log, LANE_LAST_log1p, LANE_LAST_log2, LANE_LAST_log10,
+    LANE_FUNCTIONS
+};
+
+static inline lane_i lane_differs(lane_d a, lane_d b) { return ((lane_i)a ^ (lane_i)b) != 0; }
+
+/* The call at a place, made by `lane_name_of(call, live, x)`: many have the argument of the step before, or that of the
+ * call before. */
+#define LANE_REMEMBERED(name)                                                                                      \
+    static __attribute__((noinline)) void lane_##name##_at(LaneCall *call, LaneCall *last, lane_i new, lane_d x) { \
+        const lane_i unknown = new & lane_differs(last->x, x);                                                     \
+        if (lane_any(unknown)) lane_##name##_of(last, unknown, x);                                                 \
+        call->x = lane_pick_d(new, x, call->x);                                                                    \
+        call->result = lane_pick_d(new, last->result, call->result);                                               \
+        call->other = lane_pick_d(new, last->other, call->other);                                                  \
+    }                                                                                                              \
+    static inline const LaneCall *lane_##name##_call(LaneCall *calls, int place, lane_i live, lane_d x) {          \
+        LaneCall *const call = &calls[LANE_FUNCTIONS + place];                                                     \
+        const lane_i new = live & lane_differs(call->x, x);                                                        \
+        if (lane_any(new)) lane_##name##_at(call, &calls[LANE_LAST_##name], new, x);                               \
+        return call;                                                                                               \
+    }
+
+#define LANE_FUNCTION(name)                                                               \
+    LANE_REMEMBERED(name)                                                                 \
+    static inline lane_d lane_##name(LaneCall *calls, int place, lane_i live, lane_d x) { \
+        return lane_##name##_call(calls, place, live, x)->result;                         \
+    }
 
 /* One lane after the other, by the platform's function: the same bits as in a single run. */
-#define LANE_PLATFORM(name)                                                                       \
-    static __attribute__((noinline)) lane_d lane_##name##_of(LaneCall *call, lane_i live, lane_d x) { \
-        LANE_EACH(l) if (live[l]) call->result[l] = name(x[l]);                                   \
-        call->x = lane_pick_d(live, x, call->x);                                                  \
-        return call->result;                                                                      \
-    }                                                                                             \
-    static inline lane_d lane_##name(LaneCall *call, lane_i live, lane_d x) {                     \
-        return lane_is_known(call, live, x) ? call->result : lane_##name##_of(call, live, x);     \
-    }
+#define LANE_PLATFORM(name)                                                       \
+    static inline void lane_##name##_of(LaneCall *call, lane_i live, lane_d x) { \
+        LANE_EACH(l) if (live[l]) call->result[l] = name(x[l]);                   \
+        call->x = lane_pick_d(live, x, call->x);                                  \
+    }                                                                             \
+    LANE_FUNCTION(name)
 LANE_PLATFORM(asin)
 LANE_PLATFORM(acos)
 LANE_PLATFORM(sinh)
@@ -138,8 +164,9 @@ LANE_PLATFORM(log1p)
 LANE_PLATFORM(log2)
 LANE_PLATFORM(log10)
 
-static inline lane_d lane_atan2(LaneCall *call, lane_i live, lane_d y, lane_d x) {
-    (void)call;
+static inline lane_d lane_atan2(LaneCall *calls, int place, lane_i live, lane_d y, lane_d x) {
+    (void)calls;
+    (void)place;
     lane_d r = {0};
     LANE_EACH(l) if (live[l]) r[l] = atan2(y[l], x[l]);
     return r;

@@ -120,13 +120,18 @@ def point_gap(point: Point, box: Box) -> float:
 
 def point_to_oriented(point: Point, a: OrientedBox) -> float:
     """Return the distance [m] from ``point`` to a box; 0 inside."""
+    return math.sqrt(distance_squared(point, a))
+
+
+def distance_squared(point: Point, a: OrientedBox) -> float:
+    """Return the square of the distance [m2] from ``point`` to a box; 0 inside."""
     dx = point.x - a.x
     dy = point.y - a.y
     along = abs(dx * a.cos + dy * a.sin) - 0.5 * a.length
     across = abs(dy * a.cos - dx * a.sin) - 0.5 * a.width
     along = along if along > 0.0 else 0.0
     across = across if across > 0.0 else 0.0
-    return math.sqrt(along * along + across * across)
+    return along * along + across * across
 
 
 def boxes_overlap(a: Box, b: Box) -> bool:
@@ -151,7 +156,7 @@ def box_gap(a: OrientedBox, b: OrientedBox) -> float:
 
 def separation(a: OrientedBox, b: OrientedBox) -> float:
     """Return the distance [m] between two boxes that do not overlap."""
-    return _smaller(_corners_gap(box_corners(a), b), _corners_gap(box_corners(b), a))
+    return math.sqrt(_smaller(_corner_distance_squared(box_corners(a), b), _corner_distance_squared(box_corners(b), a)))
 
 
 def overlap_depth(a: OrientedBox, b: OrientedBox) -> float:
@@ -215,9 +220,10 @@ def _depth_along(a: OrientedBox, b: OrientedBox, cos_turn: float, sin_turn: floa
     return _smaller(along - abs(dx * a.cos + dy * a.sin), across - abs(dy * a.cos - dx * a.sin))
 
 
-def _corners_gap(around: Corners, a: OrientedBox) -> float:
-    left = _smaller(point_to_oriented(around.front_left, a), point_to_oriented(around.rear_left, a))
-    right = _smaller(point_to_oriented(around.rear_right, a), point_to_oriented(around.front_right, a))
+def _corner_distance_squared(around: Corners, a: OrientedBox) -> float:
+    """Return the square of the distance [m2] from a box to the nearest of another one's corners."""
+    left = _smaller(distance_squared(around.front_left, a), distance_squared(around.rear_left, a))
+    right = _smaller(distance_squared(around.rear_right, a), distance_squared(around.front_right, a))
     return _smaller(left, right)
 
 

@@ -73,9 +73,15 @@ TRANSITIONS: tuple[Row, ...] = (
 )
 
 
+GUARDS_OF_PHASE = tuple(
+    sum(1 << guard for source, guard, _, _ in TRANSITIONS if source in (phase, ANY_STATE)) for phase in GuoPhase
+)
+"""The bits of the guards that lead out of each phase."""
+
+
 def transition(phase: int, leg: int, guards: int) -> tuple[int, int]:
     """Return (phase, leg) after one sample; ``guards`` holds bit g for guard g."""
-    if is_over(phase):
+    if is_over(phase) or guards & GUARDS_OF_PHASE[phase] == 0:
         return phase, leg
     for source, guard, target, next_leg in TRANSITIONS:
         if (source == phase or source == ANY_STATE) and (guards >> guard) & 1 == 1:

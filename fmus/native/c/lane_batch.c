@@ -1,7 +1,9 @@
 /* Whole runs in lanes: as batch.c, step by step, for as many runs at a time as a vector has elements.
  *
- * A lane whose run is over begins the next one, so each lane has an exchange count of its own. A model without a form
- * in lanes has an instance for each of them. Holds no lock and no static data.
+ * Lanes that begin together take mostly the same branches. They wait for the last of them while that leaves fewer than
+ * one idle; where runs differ more in length, a lane whose run is over begins the next one. So each lane has an
+ * exchange count of its own. A model without a form in lanes has an instance for each of them. Holds no lock and no
+ * static data.
  */
 #include "lane_library.h"
 #include "lane_math.h"
@@ -41,6 +43,7 @@ typedef struct {
 
 typedef struct {
     lane_i step_ns, stop_ns, last, count, since, row;
+    lane_i length; /* of the run before [steps] */
     lane_i busy;
 } Courses;
 
@@ -144,6 +147,7 @@ static void note(const Runner *runner) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
         const Kept *wanted = &runner->batch->kept[k];
         Note *note = &runner->notes[k];
+        if (is_at_end(wanted)) continue;
         const lane_i counts = wanted->values ? is_in(look(runner->when[k]), wanted->values) : LANE_INT(-1);
         const lane_i where = courses->busy & counts;
         const lane_d now = look(runner->kept[k]), kept = note->value;
@@ -222,9 +226,21 @@ static void finish(Runner *runner, double *out) {
         if (!over[l]) continue;
         row[0] = (double)(still[l] ? STANDSTILL : STOP_TIME);
         row[1] = (double)now[l];
-        for (int64_t k = 0; k < batch->kept_count; k++) row[2 + k] = runner->notes[k].value[l];
+        for (int64_t k = 0; k < batch->kept_count; k++)
+            row[2 + k] = is_at_end(&batch->kept[k]) ? look(runner->kept[k])[l] : runner->notes[k].value[l];
+        courses->length[l] = courses->count[l];
     }
     courses->busy &= ~over;
+}
+
+/* Whether lanes whose runs are over wait for the others, as far as the lengths of their last runs tell. */
+static int is_waiting(const Courses *courses) {
+    int64_t sum = 0, longest = 0;
+    LANE_EACH(l) {
+        sum += courses->length[l];
+        longest = courses->length[l] > longest ? courses->length[l] : longest;
+    }
+    return lane_any(courses->busy) && LANES * longest - sum < longest;
 }
 
 /* No step goes beyond the stop time. */
@@ -319,10 +335,12 @@ LIBRARY_EXPORT int64_t lane_rows(const Batch *batch, const LaneLibrary *const *l
         for (int64_t m = 0; m < batch->model_count; m++) is_every_step &= times[r * time_width + 2 + m] == 1;
     connect(&runner, is_every_step);
     for (;;) {
-        LANE_EACH(l)
-        if (!runner.courses.busy[l] && next < rows) {
-            begin(&runner, l, next, params + next * width, times + next * time_width);
-            next++;
+        if (next < rows && lane_any(~runner.courses.busy) && !is_waiting(&runner.courses)) {
+            for (int l = 0; l < LANES && next < rows; l++) {
+                if (runner.courses.busy[l]) continue;
+                begin(&runner, l, next, params + next * width, times + next * time_width);
+                next++;
+            }
         }
         if (!lane_any(runner.courses.busy)) break;
         exchange(&runner);

@@ -194,18 +194,19 @@ class Expressions:
         if not isinstance(place.kind, LaneArray | Pointer):
             raise NoLanesError(f"an item of {place.kind}")
         kind = place.kind.item if isinstance(place.kind, LaneArray) else place.kind.to
-        return LanePlace(f"{place.text}[({index.text}){'[l]' if is_own else ''}]", kind)
+        text = f"({convert(index, INT)} & {self.mask})[l]" if is_own else index.text
+        return LanePlace(f"{place.text}[{text}]", kind)
 
     def _gather(self, place: LanePlace) -> LaneValue:
-        """Return what each live lane finds at a place; an index means nothing in the others."""
-        kind, each = place.kind, f"const lane_i where = {self.mask}; LANE_EACH(l) if (where[l])"
+        """Return what each live lane finds at a place; an index means nothing in the others, which find the first."""
+        kind = place.kind
         if isinstance(kind, Number):
             item = place.text if kind.is_shared else f"{place.text}[l]"
             text = f"{'-' if kind == SHARED_BOOL else ''}{item}"
-            return LaneValue(f"({{ {type_name(own(kind))} r = {{0}}; {each} r[l] = {text}; r; }})", own(kind))
+            return LaneValue(f"({{ {type_name(own(kind))} r; LANE_EACH(l) r[l] = {text}; r; }})", own(kind))
         if isinstance(kind, LaneStruct):
             take = f"{kind.name}_take(&r, &{place.text}, l)"
-            return LaneValue(f"({{ {kind.name} r = {{}}; {each} {take}; r; }})", kind)
+            return LaneValue(f"({{ {kind.name} r; LANE_EACH(l) {take}; r; }})", kind)
         raise NoLanesError(f"{kind} at an index that differs between lanes")
 
     def _unary(self, node: Any) -> LaneValue:

@@ -25,6 +25,8 @@ from fmus.compiler.lanes.kinds import (
 )
 from fmus.compiler.lanes.reading import Declarations, is_const
 
+PLACE = re.compile(r"\(\*\w+\)|\w+(->\w+|\.\w+|\[\w+\])*")
+"""The text of a struct that is somewhere, and not worked out."""
 ANYTHING = "*"
 """For a statement that calls a function, which may change what its arguments point to."""
 
@@ -50,16 +52,16 @@ class Function:
     def text(self) -> list[str]:
         """Return the lines of the function."""
         if self.returns_early:
-            self._line("lane_i at = live;")
-            self._line("lane_i gone = LANE_NONE;")
-            self._use("at")
+            self._line("lane_i lane_at = live;")
+            self._line("lane_i lane_gone = LANE_NONE;")
+            self._use("lane_at")
             if not isinstance(self.result, Void):
-                zero = "{0}" if isinstance(self.result, Number) else "{}"
-                self._line(f"{declaration(self.result, 'returned')} = {zero};")
+                zero = " = {0}" if isinstance(self.result, Number) else ""
+                self._line(f"{declaration(self.result, 'lane_returned')}{zero};")
         items = self.node.body.block_items or []
         self._block(items)
         if self.returns_early and not isinstance(self.result, Void) and not isinstance(items[-1], c_ast.Return):
-            self._line("return returned;")
+            self._line("return lane_returned;")
         return [signature(self.file, self.node.decl.name), "{", "    (void)live;", *self.lines, "}"]
 
     def _line(self, text: str) -> None:
@@ -70,7 +72,7 @@ class Function:
 
     def _fresh(self, word: str) -> str:
         self.count += 1
-        return f"{word}{self.count}"
+        return f"lane_{word}{self.count}"
 
     def _block(self, items: list[Any]) -> None:
         known = dict(self.write.variables)
@@ -170,8 +172,6 @@ class Function:
             kind = self._kind_of_initial(node, kind)
             is_list = isinstance(node.init, c_ast.InitList)
             text = self.write.initial(node.init, kind) if is_list else self.write.argument(node.init, kind)
-        elif isinstance(kind, LaneStruct):
-            text = "{}"
         elif isinstance(kind, Number):
             text = "{0}"
         self.write.variables[node.name] = LaneVariable(kind, self.level)
@@ -201,7 +201,7 @@ class Function:
             raise NoLanesError(f"{kind} that differs between lanes")
         chosen = self._fresh("chosen")
         self._line(f"{kind.to.name} {chosen} = *{other.text};")
-        self._line(f"{kind.to.name}_put(&{chosen}, *{one.text}, {convert(where, BOOL)});")
+        self._line(f"{kind.to.name}_put(&{chosen}, {one.text}, {convert(where, BOOL)});")
         self.write.variables[node.name] = LaneVariable(kind, self.level)
         self._line(f"const {declaration(kind, node.name)} = &{chosen};")
 
@@ -249,7 +249,10 @@ class Function:
         elif isinstance(kind, Number) and not kind.is_shared:
             self._line(f"{target.text} = lane_pick_{kind.name[0]}({self.mask}, {text}, {target.text});")
         elif isinstance(kind, LaneStruct):
-            self._line(f"{kind.name}_put(&{target.text}, {self._as_struct(text, kind)}, {self.mask});")
+            value = text if PLACE.fullmatch(text) else self._fresh("value")
+            if value != text:
+                self._line(f"const {kind.name} {value} = {text};")
+            self._line(f"{kind.name}_put(&{target.text}, &{value}, {self.mask});")
         else:
             raise NoLanesError(f"{kind} assigned")
 
@@ -273,11 +276,12 @@ class Function:
         if condition.kind.is_shared:
             self._line(f"if ({condition.text}) {{")
             self._inner(node.iftrue)
+            self._narrow(node.iftrue)
             if node.iffalse is not None:
                 self._line("} else {")
                 self._inner(node.iffalse)
+                self._narrow(node.iffalse)
             self._line("}")
-            self._narrow(node)
             return
         name, outer, level = self._fresh("if"), self.mask, self.level
         self._line(f"const lane_i {name} = {convert(condition, BOOL)};")
@@ -290,10 +294,10 @@ class Function:
             self.level = self._next_level()
             self._use(inner)
             self._inner(part)
-            self._line("}")
             self._use(outer)
+            self._narrow(part)
+            self._line("}")
             self.level = level
-        self._narrow(node)
 
     def _next_level(self) -> int:
         self.levels += 1
@@ -305,13 +309,16 @@ class Function:
         self.depth -= 1
 
     def _narrow(self, node: Any) -> None:
-        """Take those that have returned, or left the loop, out of the present mask."""
+        """Take those that have returned in a statement, or left the loop, out of the present mask."""
         if holds(node, c_ast.Return):
-            self._line(f"{self.mask} &= ~gone;")
-            value = "" if isinstance(self.result, Void) else " returned"
-            self._line(f"if (!lane_any(live & ~gone)) return{value};")
+            self._narrow_returned()
         if self.loops and self.loops[-1] and holds_break(node):
             self._line(f"{self.mask} &= {self.loops[-1]};")
+
+    def _narrow_returned(self) -> None:
+        self._line(f"{self.mask} &= ~lane_gone;")
+        value = "" if isinstance(self.result, Void) else " lane_returned"
+        self._line(f"if (!lane_any(live & ~lane_gone)) return{value};")
 
     def _leave(self, loop: str) -> None:
         self._line(f"{loop} &= ~{self.mask};")
@@ -321,18 +328,18 @@ class Function:
     def _give(self, node: Any) -> None:
         if node.expr is None:
             if self.returns_early:
-                self._line(f"gone |= {self.mask};")
+                self._line(f"lane_gone |= {self.mask};")
                 self._line(f"{self.mask} = LANE_NONE;")
             return
         text = self.write.argument(node.expr, self.result)
         if not self.returns_early:
             self._line(f"return {self._as_struct(text, self.result) if isinstance(self.result, LaneStruct) else text};")
             return
-        self._put(LaneValue("returned", self.result), text, False)
+        self._put(LaneValue("lane_returned", self.result), text, False)
         if self.depth == 1:
-            self._line("return returned;")
+            self._line("return lane_returned;")
             return
-        self._line(f"gone |= {self.mask};")
+        self._line(f"lane_gone |= {self.mask};")
         self._line(f"{self.mask} = LANE_NONE;")
 
     def _repeat(self, node: Any) -> None:
@@ -394,7 +401,7 @@ class Function:
         self._use(name)
         self.depth += 1
         condition = self.write.number(node.cond, BOOL)
-        self._line(f"{name} &= {condition}{' & ~gone' if self.returns_early else ''};")
+        self._line(f"{name} &= {condition}{' & ~lane_gone' if self.returns_early else ''};")
         self._line(f"if (!lane_any({name})) break;")
         self.depth -= 1
         self.loops.append(name)
@@ -427,10 +434,11 @@ class Function:
             self.level = self._next_level()
             self._use(inner)
             self._cases(case.stmts)
-            self._line("}")
             self._use(outer)
+            if any(holds(item, c_ast.Return) for item in case.stmts):
+                self._narrow_returned()
+            self._line("}")
             self.level = level
-        self._narrow(node)
 
     def _cases(self, statements: list[Any]) -> None:
         items = list(statements)

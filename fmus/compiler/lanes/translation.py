@@ -66,10 +66,10 @@ def _own(kind: Kind) -> Kind:
 
 def _struct_functions(file: Declarations, name: str) -> list[str]:
     """Return the functions that put a struct into some lanes, and take one lane of a struct."""
-    put = [f"static inline void {name}_put({name} *to, {name} from, lane_i where)", "{"]
+    put = [f"static inline void {name}_put({name} *to, const {name} *from, lane_i where)", "{"]
     take = [f"static inline void {name}_take({name} *to, const {name} *from, int l)", "{"]
     for field, kind in file.structs[name].items():
-        put += _each(field, kind, "from.")
+        put += _each(field, kind, "from->")
         take += _each(field, kind, "from->", "l")
     return ["", *put, "}", "", *take, "}"]
 
@@ -82,7 +82,7 @@ def _each(field: str, kind: Kind, source: str, lane: str = "") -> list[str]:
         depth, kind = depth + 1, kind.item
     to, value = f"to->{field}{index}", f"{source}{field}{index}"
     if isinstance(kind, LaneStruct):
-        text = f"{kind.name}_take(&{to}, &{value}, l);" if lane else f"{kind.name}_put(&{to}, {value}, where);"
+        text = f"{kind.name}_take(&{to}, &{value}, l);" if lane else f"{kind.name}_put(&{to}, &{value}, where);"
     elif lane:
         text = f"{to}[l] = {value}[l];"
     else:

@@ -7,7 +7,7 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.params import BAY_WIDTH, CAR_WIDTH, CAR_WIDTH_SIGMA
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import SlotRow
+from controller_fmu.parking.slots.row import RowMember, SlotRow
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -82,24 +82,34 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last.
 
     The middles of the cars beside n empty bays are n + 1 bays apart: 4.6 to 5.8, 6.9 to 8.7 or 9.2 to 11.6 m where bays
-    are 2.3 to 2.9 m wide, so n follows from the mean width, or from that of this row's bays where two cars beside each
-    other show it. Cars are as wide as usual within 0.1 m, sides as measured within 0.4 m.
+    are 2.3 to 2.9 m wide, so n follows from the width of usual bays and of this row's.
     """
-    distance = candidate.ahead.start - candidate.behind.end + CAR_WIDTH
+    ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead)
+    distance = ahead - candidate.behind.end + 0.5 * _car_width(candidate.behind)
     bay = bay_width(candidate.row)
     if distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
-    return candidate.ahead.start + 0.5 * CAR_WIDTH - distance / max(math.floor(distance / bay + 0.5), 3)
+    return ahead - distance / max(math.floor(distance / bay + 0.5), 3)
+
+
+def _car_width(member: RowMember) -> float:
+    """Return the width [m] of the car beside a slot: as observed, if in full, else as usual.
+
+    Whatever hides both of its corners, such as a bicycle rack, stands in its middle.
+    """
+    width = member.end - member.start
+    is_one_car = member.start_known and member.end_known and width < CAR_WIDTH + 3.0 * CAR_WIDTH_SIGMA
+    return width if is_one_car else CAR_WIDTH
 
 
 def bay_width(row: SlotRow) -> float:
-    """Return the mean distance [m] from car to car where no place between two is empty, else that of usual bays."""
-    total = 0.0
-    count = 0
+    """Return the mean distance [m] from car to car where no place between two is empty; usual bays count as one."""
+    total = BAY_WIDTH
+    count = 1
     for number in range(row.used - 1):
         ahead = row.members[number]
         behind = row.members[number + 1]
         if ahead.start_known and behind.start_known and CAR_WIDTH < ahead.start - behind.start < 2.0 * CAR_WIDTH:
             total += ahead.start - behind.start
             count += 1
-    return total / count if count > 0 else BAY_WIDTH
+    return total / count

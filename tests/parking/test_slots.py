@@ -21,14 +21,13 @@ from controller_fmu.parking.slots.candidate import (
     SlotCandidate,
     SlotType,
     find_slot,
-    is_too_short_for_car,
     log_likelihood_ratio,
     row_point,
 )
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MAX_MEMBERS, RowMember, SlotRow, find_row, side_as_member
+from controller_fmu.parking.slots.row import MAX_MEMBERS, RowMember, SlotRow, find_row, is_too_short_for_car, side_as_member
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter, is_slot_corner, slot_of_filter
 from modelkit.geometry import Box, Point
 from modelkit.vocabulary import Pose

@@ -28,7 +28,6 @@ from controller_fmu.parking.slots.candidate import (
     LOG_TEN,
     MAX_CAR,
     MAX_POST,
-    is_too_short_for_car,
     length_log_likelihood,
     row_point,
 )
@@ -41,6 +40,7 @@ from controller_fmu.parking.slots.row import (
     NO_MEMBER,
     RowMember,
     SlotRow,
+    is_too_short_for_car,
     with_member,
 )
 from modelkit.maths import PI, wrap_angle

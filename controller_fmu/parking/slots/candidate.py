@@ -36,6 +36,7 @@ from controller_fmu.parking.slots.row import (
     RowMember,
     SlotRow,
     corner_of,
+    is_too_short_for_car,
 )
 from modelkit.geometry import Point
 
@@ -271,11 +272,6 @@ def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: 
     if not is_complete and deviation < 0.0:
         return 0.0
     return -min(0.5 * deviation * deviation, 2.0 * LOG_TEN)
-
-
-def is_too_short_for_car(length: float) -> bool:
-    """Return whether a side of ``length`` [m], 0 if unknown, is shorter than any car is wide: of a pillar or a post."""
-    return 0.0 < length < CAR_WIDTH - 3.0 * CAR_WIDTH_SIGMA
 
 
 def gap_depth(

@@ -7,7 +7,8 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, offset_variance, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_WIDTH, MappingParams
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth, is_too_short_for_car
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.slots.row import is_too_short_for_car
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 

@@ -18,7 +18,7 @@ from controller_fmu.parking.map.landmark import (
     start_point,
 )
 from controller_fmu.parking.map.local_map import is_confirmed
-from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.params import CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from modelkit.geometry import Point
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
@@ -279,7 +279,10 @@ def _nearest_front(row: SlotRow) -> float:
 
 
 def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], at: int) -> float:
-    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one."""
+    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one.
+
+    What is too short for a car may be turned anyhow: a pillar, or what shows of a front behind a hitch.
+    """
     side = sides[at]
     known = 0.0
     for number in range(MAX_LANDMARKS):
@@ -287,7 +290,14 @@ def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], 
         overlaps = other.end > side.start and side.end > other.start
         if other.end > other.start and overlaps and abs(other.front - side.front) < ROW_DEPTH:
             known += 1.0 / max(landmarks[number].hh, MIN_HEADING_VARIANCE)
-    return 1.0 / (max(landmarks[at].hh, MIN_HEADING_VARIANCE) * (1.0 + ASKEW_VARIANCE * known))
+    variance = max(landmarks[at].hh, MIN_HEADING_VARIANCE) * (1.0 + ASKEW_VARIANCE * known)
+    is_part = is_too_short_for_car(side.end - side.start)
+    return 1.0 / (variance + (MAX_TILT * MAX_TILT / 3.0 if is_part else 0.0))
+
+
+def is_too_short_for_car(length: float) -> bool:
+    """Return whether a side of ``length`` [m], 0 if unknown, is shorter than any car is wide: of a pillar or a post."""
+    return 0.0 < length < CAR_WIDTH - 3.0 * CAR_WIDTH_SIGMA
 
 
 def _line_direction(row: SlotRow) -> RowDirection:

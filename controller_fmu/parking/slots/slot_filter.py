@@ -26,11 +26,10 @@ from controller_fmu.parking.slots.candidate import (
     SlotCandidate,
     SlotType,
     into_heading,
-    is_too_short_for_car,
     row_point,
 )
 from controller_fmu.parking.slots.correction import correction_gate
-from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow
+from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow, is_too_short_for_car
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose

@@ -230,43 +230,33 @@ def with_member(row: SlotRow, at: int, member: RowMember) -> SlotRow:
 
 
 def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> RowDirection:
-    """Return how far a row is turned against its frame: half way between the road and its cars' mean heading.
+    """Return how far a row is turned against its frame: the road's direction.
 
-    The road follows from the headings of all sides, those of cars and what lies deeper, and from the line through the
-    row. A line that contradicts the headings is none of the row: one of its cars has moved out of it. The sides of one
-    car share its misalignment.
+    It follows from the headings of all sides, those of cars and what lies deeper, and from the line through the row. A
+    line that contradicts the headings is none of the row: one of its cars has moved out of it. The sides of one car
+    share its misalignment. Half of the deviation is the slot's own: the vehicle stands between cars that make it.
     """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
     deepest = _nearest_front(row) + ROW_DEPTH
     total = 0.0
     turn = 0.0
-    of_cars = 0.0
-    turn_of_cars = 0.0
-    variance = 0.0
+    has_cars = False
     sides = tuple(side_as_member(landmarks[number], row.frame, row.side, params) for number in range(MAX_LANDMARKS))
     for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
-        member = sides[number]
-        if member.end > member.start:
+        if sides[number].end > sides[number].start:
             weight = _side_weight(landmarks, sides, number)
-            weighted = weight * wrap_angle(landmark.heading - along)
             total += weight
-            turn += weighted
-            if member.front < deepest:
-                of_cars += weight
-                turn_of_cars += weighted
-                variance += weight * weight * landmark.hh
-    if of_cars <= 0.0:
+            turn += weight * wrap_angle(landmarks[number].heading - along)
+            has_cars = has_cars or sides[number].front < deepest
+    if not has_cars:
         return RowDirection(0.0, MAX_TILT)
-    by_cars = turn_of_cars / of_cars
     line = _line_direction(row)
     difference = line.turn - turn / total
     if difference * difference < params.gate * (1.0 / total + line.sigma * line.sigma):
         weight = 1.0 / (line.sigma * line.sigma)
         turn += weight * line.turn
         total += weight
-    sigma = 0.5 * math.sqrt(1.0 / total + variance / (of_cars * of_cars))
-    return RowDirection(turn / total, sigma)
+    return RowDirection(turn / total, 0.5 / math.sqrt(total))
 
 
 def _nearest_front(row: SlotRow) -> float:

@@ -27,7 +27,14 @@ from controller_fmu.parking.slots.candidate import (
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MAX_MEMBERS, RowMember, SlotRow, find_row, is_too_short_for_car, side_as_member
+from controller_fmu.parking.slots.row import (
+    MAX_MEMBERS,
+    RowMember,
+    SlotRow,
+    find_row,
+    is_too_short_for_car,
+    side_as_member,
+)
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter, is_slot_corner, slot_of_filter
 from modelkit.geometry import Box, Point
 from modelkit.vocabulary import Pose
@@ -244,8 +251,8 @@ def test_a_row_is_found_on_a_slanting_pass() -> None:
 
 
 def test_a_car_that_has_left_its_row_does_not_turn_it() -> None:
-    """One stands 0.8 m out of a perpendicular row: the line through both is turned by 10 deg, they are not."""
-    row = row_beside([side(0.0, -0.8, 1.0, 1.8), side(-4.4, 0.0, -1.0, 1.8)], 0.0)
+    """One stands 1.2 m out of a perpendicular row: the line through both is turned by 15 deg, they are not."""
+    row = row_beside([side(0.0, -1.2, 1.0, 1.8), side(-4.4, 0.0, -1.0, 1.8)], 0.0)
     assert math.degrees(row.frame.heading) == pytest.approx(0.0, abs=0.5)
 
 
@@ -271,11 +278,11 @@ def test_a_vehicle_is_flush_with_the_neighbour_that_stands_further_in(deeper: fl
     assert overhang_of(slot, OUTLINE, goal) == pytest.approx(overhang, abs=1e-6)
 
 
-def test_a_row_runs_half_way_between_the_road_and_its_cars() -> None:
-    """Both cars are turned by 4 deg, the line through them by 0: the road is between, the row too."""
+def test_a_row_runs_along_the_road() -> None:
+    """Both cars are turned by 4 deg, the line through them by 0: the road is between."""
     row = row_beside([side(0.0, 0.0, 4.0, 4.4), side(-10.0, 0.0, 4.0, 4.4)], 0.0)
     alone = row_beside([side(0.0, 0.0, 4.0, 4.4)], 0.0)
-    assert 2.0 < math.degrees(row.frame.heading) < 3.0
+    assert 1.0 < math.degrees(row.frame.heading) < 2.0
     assert 0.2 < math.degrees(row.heading_sigma) < math.degrees(alone.heading_sigma) < 1.6
 
 
@@ -355,6 +362,15 @@ def test_how_wide_bays_are_shows_by_cars_beside_each_other(pitch: float, gap: fl
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)
 
 
+def test_a_rack_on_the_car_beside_two_bays_leaves_the_bay_where_it_is() -> None:
+    """It hides both corners of the car behind: the gap measured is 0.4 m longer than two bays of 2.6 m."""
+    for hidden in (0.0, 0.4):
+        behind = RowMember(-1.8 + hidden, -hidden, start_known=True, end_known=True)
+        ahead = RowMember(6.0, 7.8, start_known=True, end_known=True)
+        slot = SlotCandidate(SlotType.PERPENDICULAR, row=SlotRow(Pose(), -1.0), behind=behind, ahead=ahead)
+        assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(4.3, abs=0.01)
+
+
 @pytest.mark.parametrize("order", [1, -1])
 def test_a_pillar_bounds_the_gap_though_the_car_behind_it_is_mapped_too(order: int) -> None:
     """The flank of a pillar 0.5 m inside the gap that was seen from the road, and of its car; or only its corner."""
@@ -373,6 +389,12 @@ def test_a_car_that_has_moved_away_leaves_its_flank_to_bound_the_gap() -> None:
     flank = side(0.0, -2.5, 90.0, 2.0)
     corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
     assert corrected.behind.end == pytest.approx(0.0)
+
+
+def test_a_front_that_a_hitch_hides_does_not_turn_the_row() -> None:
+    """Of one of three cars 1 m shows, turned by 15 deg."""
+    cars = [side(0.0, 0.0, 0.0, 1.8), side(-2.6, 0.3, 15.0, 1.0), side(-5.2, 0.0, 0.0, 1.8)]
+    assert math.degrees(row_beside(cars, 0.0).frame.heading) == pytest.approx(0.0, abs=1.0)
 
 
 def test_two_sides_of_one_car_count_as_one_car() -> None:

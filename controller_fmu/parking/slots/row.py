@@ -269,20 +269,24 @@ def _nearest_front(row: SlotRow) -> float:
 
 
 def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], at: int) -> float:
-    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one.
-
-    What is too short for a car may be turned anyhow: a pillar, or what shows of a front behind a hitch.
-    """
+    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one."""
     side = sides[at]
     known = 0.0
     for number in range(MAX_LANDMARKS):
         other = sides[number]
         overlaps = other.end > side.start and side.end > other.start
         if other.end > other.start and overlaps and abs(other.front - side.front) < ROW_DEPTH:
-            known += 1.0 / max(landmarks[number].hh, MIN_HEADING_VARIANCE)
-    variance = max(landmarks[at].hh, MIN_HEADING_VARIANCE) * (1.0 + ASKEW_VARIANCE * known)
+            known += 1.0 / _heading_variance(landmarks[number], other)
+    return 1.0 / (_heading_variance(landmarks[at], side) * (1.0 + ASKEW_VARIANCE * known))
+
+
+def _heading_variance(landmark: Landmark, side: RowMember) -> float:
+    """Return the variance [rad2] of a side's heading as a car's.
+
+    What is too short for a car may be turned anyhow: a pillar, or what shows of a front behind a hitch.
+    """
     is_part = is_too_short_for_car(side.end - side.start)
-    return 1.0 / (variance + (MAX_TILT * MAX_TILT / 3.0 if is_part else 0.0))
+    return max(landmark.hh, MIN_HEADING_VARIANCE) + (MAX_TILT * MAX_TILT / 3.0 if is_part else 0.0)
 
 
 def is_too_short_for_car(length: float) -> bool:

@@ -44,7 +44,7 @@ def compile_lane_rows(
     alone: Rows,
 ) -> Rows | None:
     """Return the runs of a study's own ``code`` in lanes; None where no model has a form in lanes, no compiler
-    knows vectors, or the platform's sine is another one.
+    knows vectors, or the platform's functions are others.
 
     A model without such a form has an instance for each lane. ``alone``: the same runs one after the other, which
     makes them where there are few. The runs have no faults.

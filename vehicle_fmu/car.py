@@ -13,7 +13,14 @@ from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, DriverParams, ManualInput, VehicleInput, VehicleParams
 from vehicle_fmu.manual_driving import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.odometry import OdometryState, reckon
-from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
+from vehicle_fmu.steering import (
+    DELAY_CELLS,
+    SteeringState,
+    delay_request,
+    pass_request,
+    take_up_play,
+    turn_steering_wheel,
+)
 
 
 class CarState(NamedTuple):
@@ -30,6 +37,8 @@ class CarState(NamedTuple):
     driver: DriverState = DriverState()
     selector: Selector = Selector()
     steering: SteeringState = SteeringState()
+    request_line: tuple[float, ...] = (0.0,) * DELAY_CELLS
+    """Requests [rad] of the steering's dead time, oldest first; without one, they are not kept."""
     pedals: Pedals = Pedals()
     body: BodyState = BodyState()
     odometry: OdometryState = OdometryState()
@@ -58,15 +67,16 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     if treads:
         wanted = lever_gear(inputs.manual, state.selector.gear, state.speed)
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
-    steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
+    state = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
+    steering = state.steering
     wheel = state.steering_wheel_angle
     if state.time_ns * 1e-9 < params.steering.fault_time:
         wheel = turn_steering_wheel(
             wheel, steering.lagged, params.car.steering, params.steering.standstill_rate, h, state.speed
         )
-    steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
+    play = take_up_play(steering.play, wheel, params.steering.backlash)
     state = state._replace(driver=driver, selector=selector)
-    angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)
+    angles = (steering.play / params.car.steering.ratio, play / params.car.steering.ratio)
     speed, rolled_speed = state.speed, state.rolled_speed
     if treads:
         state = _tread(state, inputs.manual, angles, params, h)
@@ -82,19 +92,26 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         steering_wheel_angle=wheel,
         distance=state.distance + 0.5 * h * abs(speed + state.speed),
         brake_pedal=1.0 if faulty else _brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
-        steering=steering,
+        steering=SteeringState(steering.lagged, play),
         odometry=odometry,
     )
 
 
-def _steer(state: CarState, inputs: VehicleInput, released: bool, params: VehicleParams, next_ns: int) -> SteeringState:
-    """Return the steering with the request of whoever holds the wheel: driver, controller or nobody."""
-    steering = state.steering
-    if grabs(state.time_ns, params.driver):
-        return hold_request(params.driver.steering_override_angle, steering.play)
-    if inputs.steering_active and not released:
-        return pass_request(steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
-    return hold_request(state.steering_wheel_angle, steering.play)
+def _steer(state: CarState, inputs: VehicleInput, released: bool, params: VehicleParams, next_ns: int) -> CarState:
+    """Return the car with the request of whoever holds the wheel: driver, controller or nobody."""
+    grabbed = grabs(state.time_ns, params.driver)
+    held = params.driver.steering_override_angle if grabbed else state.steering_wheel_angle
+    passes = inputs.steering_active and not released and not grabbed
+    request = inputs.steering_wheel_request if passes else held
+    if params.steering.dead_time > 0.0:
+        line = (held,) * DELAY_CELLS
+        if passes:
+            line = delay_request(state.request_line, request, params.steering.dead_time, state.time_ns, next_ns)
+        state = state._replace(request_line=line)
+        request = line[0]
+    if passes:
+        return state._replace(steering=pass_request(state.steering, request, params.steering, state.time_ns, next_ns))
+    return state._replace(steering=SteeringState(held, state.steering.play))
 
 
 def _go(

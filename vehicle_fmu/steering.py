@@ -20,8 +20,6 @@ STANDSTILL_SPEED = 0.05
 class SteeringState(NamedTuple):
     """What the steering remembers besides the angle of the wheel."""
 
-    line: tuple[float, ...] = (0.0,) * DELAY_CELLS
-    """Requests [rad] of the dead time, oldest first."""
     lagged: float = 0.0
     """Request after dead time and lag [rad]."""
     play: float = 0.0
@@ -39,27 +37,25 @@ def turn_steering_wheel(
     return move_towards(angle, target, rate * h)
 
 
+def delay_request(
+    line: tuple[float, ...], request: float, dead_time: float, start_ns: int, end_ns: int
+) -> tuple[float, ...]:
+    """Return the requests [rad] of the dead time [s] at ``end_ns``, ``request`` held since ``start_ns``."""
+    cell_ns = int(dead_time * 1e9 / DELAY_CELLS + 0.5)
+    for _ in range(min(DELAY_CELLS, end_ns // cell_ns - start_ns // cell_ns)):
+        line = line[1:] + (request,)
+    return line
+
+
 def pass_request(
     state: SteeringState, request: float, params: SteeringParams, start_ns: int, end_ns: int
 ) -> SteeringState:
-    """Return the steering with ``request`` [rad] held from ``start_ns`` to ``end_ns`` at the head of its line."""
-    line = state.line
-    late = request
-    if params.dead_time > 0.0:
-        cell_ns = int(params.dead_time * 1e9 / DELAY_CELLS + 0.5)
-        for _ in range(min(DELAY_CELLS, end_ns // cell_ns - start_ns // cell_ns)):
-            line = line[1:] + (request,)
-        late = line[0]
+    """Return the steering with ``request`` [rad], which comes after the dead time, from ``start_ns`` to ``end_ns``."""
     share = 1.0
     if params.lag > 0.0:
         share = 1.0 - math.exp(-(end_ns - start_ns) * 1e-9 / params.lag)
-    lagged = state.lagged + share * (late - state.lagged) if share < 1.0 else late
-    return SteeringState(line, lagged, state.play)
-
-
-def hold_request(angle: float, play: float) -> SteeringState:
-    """Return the steering with nothing on its way: every request is the wheel's own ``angle`` [rad]."""
-    return SteeringState((angle,) * DELAY_CELLS, angle, play)
+    lagged = state.lagged + share * (request - state.lagged) if share < 1.0 else request
+    return SteeringState(lagged, state.play)
 
 
 def take_up_play(play: float, angle: float, backlash: float) -> float:

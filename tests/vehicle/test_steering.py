@@ -5,17 +5,28 @@ import math
 import pytest
 
 from modelkit.car import CarSteering
-from vehicle_fmu.interface import SteeringParams
-from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
+from modelkit.vocabulary import Pose
+from vehicle_fmu.car import initial_car, step_car
+from vehicle_fmu.interface import SteeringParams, VehicleInput, VehicleParams
+from vehicle_fmu.steering import (
+    DELAY_CELLS,
+    SteeringState,
+    delay_request,
+    pass_request,
+    take_up_play,
+    turn_steering_wheel,
+)
 
 MS = 1_000_000
 
 
 def lagged_step(params: SteeringParams, step_ms: int, until_ms: int) -> list[float]:
     """Return the request behind dead time and lag, every step, after a step of 1 rad at time zero."""
-    state, found = SteeringState(), []
+    state, line, found = SteeringState(), (0.0,) * DELAY_CELLS, []
     for t in range(0, until_ms, step_ms):
-        state = pass_request(state, 1.0, params, t * MS, (t + step_ms) * MS)
+        span = (t * MS, (t + step_ms) * MS)
+        line = delay_request(line, 1.0, params.dead_time, *span) if params.dead_time > 0.0 else (1.0,)
+        state = pass_request(state, line[0], params, *span)
         found.append(state.lagged)
     return found
 
@@ -57,6 +68,14 @@ def test_slower_at_standstill() -> None:
 
 
 def test_a_held_wheel_leaves_nothing_on_its_way() -> None:
-    state = hold_request(0.7, 0.6)
-    assert set(state.line) == {0.7}
-    assert (state.lagged, state.play) == (0.7, 0.6)
+    params = VehicleParams(steering=SteeringParams(dead_time=0.16))
+    state = initial_car(Pose(), True, params)
+    for number in range(1, 11):
+        state = step_car(
+            state, VehicleInput(steering_active=True, steering_wheel_request=0.7), False, params, number * 10 * MS
+        )
+    assert set(state.request_line) == {0.0, 0.7}
+    angle = state.steering_wheel_angle
+    state = step_car(state, VehicleInput(), False, params, 110 * MS)
+    assert set(state.request_line) == {angle}
+    assert state.steering.lagged == angle

@@ -305,15 +305,20 @@ static size_t lay_out(Runner *runner, const LaneLibrary *const *lanes, unsigned 
     return taken;
 }
 
-/* Return whether sine and cosine in lanes have the bits of this platform's, for 30,000 arguments of all sizes. */
+/* Return whether the functions in lanes have the bits of this platform's, for 30,000 arguments of all sizes. */
 LIBRARY_EXPORT int64_t lanes_agree(void) {
     int64_t differing = 0;
     for (double size = 1e-9; size < 1e8; size *= 1.01) {
-        LaneCall call = {.x = LANE_DOUBLE(NAN)};
+        LaneCall turn = {.x = LANE_DOUBLE(NAN)}, tangent = turn, arc = turn;
         lane_d x;
         LANE_EACH(l) x[l] = size * (1.0 + 1e-3 * l) * (l % 2 ? -1.0 : 1.0);
-        lane_sincos_of(&call, LANE_INT(-1), x);
-        LANE_EACH(l) differing += call.result[l] != sin(x[l]) || call.other[l] != cos(x[l]);
+        lane_sincos_of(&turn, LANE_INT(-1), x);
+        lane_tan_of(&tangent, LANE_INT(-1), x);
+        lane_atan_of(&arc, LANE_INT(-1), x);
+        LANE_EACH(l) {
+            differing += turn.result[l] != sin(x[l]) || turn.other[l] != cos(x[l]);
+            differing += tangent.result[l] != tan(x[l]) || arc.result[l] != atan(x[l]);
+        }
     }
     return differing == 0;
 }

@@ -5,7 +5,7 @@ import math
 from controller_fmu.common.chart import bit
 from controller_fmu.common.driver_selection import ChosenTask
 from controller_fmu.common.external_slot import SlotKind
-from controller_fmu.common.monitor import MonitorState
+from controller_fmu.common.monitor import MonitorState, watch
 from controller_fmu.common.phases import PhaseExpectation
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import Reason
@@ -37,7 +37,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
     monitor_collision,
 )
 from controller_fmu.parking.monitor.fault_monitor import (
-    ExpectedMotion,
     FaultClocks,
     advance_clocks,
     fault_reason,
@@ -127,8 +126,11 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         state in (ParkingState.STEERING, ParkingState.STRAIGHTENING),
     )
     monitor = params.monitor
-    expectation = ExpectedMotion(phase, memory.verdict.is_blocked, memory.steering_wheel_angle, monitor.over_speed)
-    clocks = advance_clocks(memory.clocks, expectation, inputs, params, dt_ns)
+    speed = abs(inputs.measured_speed)
+    stands = speed <= params.threshold.standstill
+    common = watch(memory.clocks.common, inputs, phase, memory.steering_wheel_angle, dt_ns, params)
+    is_blocked = memory.verdict.is_blocked
+    clocks = advance_clocks(memory.clocks, common, stands, is_blocked, speed > monitor.over_speed, dt_ns)
     spare = 0 if memory.strategy == Strategy.SLOT else max_manoeuvres(memory, params) - params.limit.manoeuvres
     reason = memory.reason
     if reason == Reason.NONE:

@@ -4,11 +4,10 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.common.monitor import MonitorState
+from controller_fmu.common.monitor import MonitorState, watch
 from controller_fmu.common.phases import PhaseExpectation
 from controller_fmu.interface import Reason
 from controller_fmu.parking.monitor.fault_monitor import (
-    ExpectedMotion,
     FaultClocks,
     advance_clocks,
     fault_reason,
@@ -68,9 +67,10 @@ def test_more_manoeuvres_than_allowed_end_the_drive() -> None:
 def test_the_vehicle_is_waited_for_where_it_should_move_and_nothing_is_in_the_way(
     moves: bool, speed: float, blocked: bool, waits: bool
 ) -> None:
-    expected = ExpectedMotion(DRIVING if moves else PhaseExpectation(), blocked, 0.0, PARAMS.monitor.over_speed)
-    inputs = ParkingSystemInput(measured_speed=speed)
-    clocks = advance_clocks(clocks_with(waiting=5), expected, inputs, PARAMS, MILLISECOND)
+    before = clocks_with(waiting=5)
+    phase = DRIVING if moves else PhaseExpectation()
+    common = watch(before.common, ParkingSystemInput(measured_speed=speed), phase, 0.0, MILLISECOND, PARAMS)
+    clocks = advance_clocks(before, common, speed == 0.0, blocked, False, MILLISECOND)
     assert clocks.common.waiting == (5 + MILLISECOND if waits else 0)
     assert clocks.common.stopping == (MILLISECOND if not moves and speed > 0.0 else 0)
     assert clocks.running == MILLISECOND

@@ -120,53 +120,34 @@ def monitor_collision(
         )
         reach = horizon * max_point_speed_ratio(outline, motion.curvature)
         sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), outline_frame(motion.stand), reach)
-        by_map = free_by_map(motion, sweep, landmarks, params, mapping)
-        by_echoes = free_by_echoes(motion, sweep, echoes, False, params)
+        for landmark in landmarks:
+            if is_confirmed(landmark, mapping):
+                a = start_point(landmark)
+                by_map = min(by_map, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
+        by_echoes = min(free_by_echo(motion, sweep, echo, False, params) for echo in echoes)
         by_map = min(by_map, by_echoes)
-        free = min(by_map, free_by_echoes(motion, sweep, echoes, True, params))
+        free = min(by_map, min(free_by_echo(motion, sweep, echo, True, params) for echo in echoes))
     slowing = SLOWING_FRACTION * motion.deceleration
     limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, slowing)
     least = MIN_RESTART_DISTANCE if motion.speed <= 0.0 else stop
     return MonitorVerdict(limit, free < NO_LIMIT and free <= min(least, motion.remaining), free, by_map <= free)
 
 
-def free_by_map(
-    motion: VehicleMotion,
-    sweep: OutlineSweep,
-    landmarks: tuple[Landmark, ...],
-    params: MonitorParams,
-    mapping: MappingParams,
+def free_by_echo(
+    motion: VehicleMotion, sweep: OutlineSweep, echo: EchoObstacle, unexplained: bool, params: MonitorParams
 ) -> float:
-    """Return how far [m] the outline goes before it comes too near to a confirmed landmark; ``NO_LIMIT``: farther."""
-    free = NO_LIMIT
-    for landmark in landmarks:
-        if is_confirmed(landmark, mapping):
-            a = start_point(landmark)
-            free = min(free, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
-    return free
+    """Return how far [m] the outline goes before it comes too near to an echo that is ``unexplained``, or not.
 
-
-def free_by_echoes(
-    motion: VehicleMotion,
-    sweep: OutlineSweep,
-    echoes: tuple[EchoObstacle, ...],
-    unexplained: bool,
-    params: MonitorParams,
-) -> float:
-    """Return the same [m] for the echoes that are ``unexplained``, or not: those may approach by themselves.
-
-    A side that overlaps the vehicle is not there: then only the point that the echo came from counts.
+    An unexplained one may approach by itself. A side that overlaps the vehicle is not there: then only the point that
+    the echo came from counts.
     """
-    free = NO_LIMIT
-    for echo in echoes:
-        if echo.is_present and echo.is_unexplained == unexplained:
-            kept = params.echo_distance if unexplained else params.map_distance
-            closing = echo.closing_speed if unexplained else 0.0
-            inside = line_distance(side_start(echo), side_end(echo), sweep.here, sweep.outline) <= 0.0
-            start = Point(echo.x, echo.y) if inside else side_start(echo)
-            end = Point(echo.x, echo.y) if inside else side_end(echo)
-            free = min(free, free_towards(motion, sweep, start, end, kept, closing))
-    return free
+    if not echo.is_present or echo.is_unexplained != unexplained:
+        return NO_LIMIT
+    inside = line_distance(side_start(echo), side_end(echo), sweep.here, sweep.outline) <= 0.0
+    start = Point(echo.x, echo.y) if inside else side_start(echo)
+    end = Point(echo.x, echo.y) if inside else side_end(echo)
+    kept = params.echo_distance if unexplained else params.map_distance
+    return free_towards(motion, sweep, start, end, kept, echo.closing_speed if unexplained else 0.0)
 
 
 def free_towards(

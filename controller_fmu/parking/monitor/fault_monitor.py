@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail
 from controller_fmu.common.phases import PhaseExpectation
 from controller_fmu.interface import Monitored, Reason, SensedWithFault
 from controller_fmu.parking.measurement.cycle import seconds
@@ -20,19 +20,6 @@ PULL_TIME = 0.2
 """A driver turns the wheel away from a request that is off by more than this [rad], for longer than this [s]."""
 
 
-class ExpectedMotion(NamedTuple):
-    """What the system requested of the vehicle over the last sample."""
-
-    phase: PhaseExpectation
-    """Whether it holds the steering wheel, and turns it or drives."""
-    is_blocked: bool
-    """The monitor keeps it standing."""
-    steering_wheel_angle: float
-    """[rad]"""
-    max_speed: float
-    """Largest speed [m/s]."""
-
-
 class FaultClocks(NamedTuple):
     """Clocks [ns]: those that every system has, with the steering monitor, and those of this one."""
 
@@ -43,16 +30,16 @@ class FaultClocks(NamedTuple):
 
 
 def advance_clocks(
-    clocks: FaultClocks, expectation: ExpectedMotion, inputs: SensedWithFault, params: Monitored, dt_ns: int
+    clocks: FaultClocks, common: MonitorState, stands: bool, is_blocked: bool, is_fast: bool, dt_ns: int
 ) -> FaultClocks:
-    """Return the clocks after a sample of ``dt_ns``; a vehicle that is kept standing is not waited for."""
-    speed = abs(inputs.measured_speed)
-    common = watch(clocks.common, inputs, expectation.phase, expectation.steering_wheel_angle, dt_ns, params)
-    blocked = clocks.blocked + (dt_ns if expectation.is_blocked else 0)
+    """Return the clocks after a sample of ``dt_ns``, the ``common`` ones as ``watch`` advanced them.
+
+    A vehicle that the collision monitor keeps standing (``is_blocked``) is not waited for.
+    """
     return FaultClocks(
-        common._replace(waiting=0) if expectation.is_blocked else common,
-        blocked if speed <= params.threshold.standstill else 0,
-        clocks.fast + dt_ns if speed > expectation.max_speed else 0,
+        common._replace(waiting=0) if is_blocked else common,
+        clocks.blocked + (dt_ns if is_blocked else 0) if stands else 0,
+        clocks.fast + dt_ns if is_fast else 0,
         clocks.running + dt_ns,
     )
 

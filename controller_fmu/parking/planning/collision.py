@@ -63,14 +63,6 @@ class ArcSweep(NamedTuple):
     """Clearance beyond the margin [m] where the sweep has ended."""
 
 
-def free_distance(
-    work: PlanningWork, pose: Pose, direction: float, curvature: float, longest: float, problem: SearchProblem
-) -> float:
-    """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
-    gap = clearance(work, pose, problem) - problem.margin
-    return sweep_arc(work, pose, gap, direction * longest, curvature, problem).distance
-
-
 def sweep_arc(
     work: PlanningWork, pose: Pose, gap: float, distance: float, curvature: float, problem: SearchProblem
 ) -> ArcSweep:

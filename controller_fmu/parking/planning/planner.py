@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.planning.collision import MAX_CLEARANCE, clearance, free_distance
+from controller_fmu.parking.planning.collision import MAX_CLEARANCE, clearance, sweep_arc
 from controller_fmu.parking.planning.grids import (
     UNREACHABLE_COST,
     add_edges,
@@ -158,19 +158,19 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     if phase == PlanningPhase.LAY_OUT:
         _lay_out(work, request)
     elif phase == PlanningPhase.BEGIN:
-        _begin_stage(work, request, problem)
+        _begin_stage(work, problem)
     elif phase == PlanningPhase.SEARCH:
         status = expand_next(work, problem)
         if status == PATH_FOUND:
             begin_smoothing(work, problem)
             work.counts[PlanCount.PHASE] = PlanningPhase.SMOOTH
         elif status != SEARCH_ACTIVE:
-            _next_stage(work, request)
+            _next_stage(work)
     elif phase == PlanningPhase.SMOOTH:
         more = smooth(work, problem)
         if not more:
             _keep_if_better(work, problem)
-            _next_stage(work, request)
+            _next_stage(work)
 
 
 def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
@@ -186,7 +186,9 @@ def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
             distance = work.best_length[number]
             overrun = 0.0
             if before.distance * distance < 0.0:
-                overrun = free_distance(work, pose, sign(before.distance), before.curvature, MAX_CLEARANCE, problem)
+                gap = clearance(work, pose, problem) - margin
+                longest = sign(before.distance) * MAX_CLEARANCE
+                overrun = sweep_arc(work, pose, gap, longest, before.curvature, problem).distance
             before = PathSegment(distance, work.best_curvature[number], overrun)
             segments = segments[:number] + (before,) + segments[number + 1 :]
             pose = pose_along_arc(pose, distance, before.curvature)
@@ -247,12 +249,12 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
         work.counts[PlanCount.PHASE] = PlanningPhase.BEGIN
 
 
-def _begin_stage(work: PlanningWork, request: PlanningRequest, problem: SearchProblem) -> None:
+def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
     """Begin the search of the stage in hand, unless not even a point could get through."""
     mark_blocked_cells(work, work.counts[PlanCount.EDGE_COUNT], problem)
     compute_cost_to_go(work, problem)
     if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE_COST:
-        _next_stage(work, request)
+        _next_stage(work)
         return
     begin_search(work, problem)
     work.counts[PlanCount.PHASE] = PlanningPhase.SEARCH
@@ -287,7 +289,7 @@ def cusps_of(work: PlanningWork) -> int:
     return found
 
 
-def _next_stage(work: PlanningWork, request: PlanningRequest) -> None:
+def _next_stage(work: PlanningWork) -> None:
     """Go on to the next search, or end."""
     stage = work.counts[PlanCount.STAGE] + 1
     best = work.counts[PlanCount.BEST_SEGMENT_COUNT] > 0

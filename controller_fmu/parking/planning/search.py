@@ -4,7 +4,7 @@ import math
 
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, try_analytic_expansion
-from controller_fmu.parking.planning.collision import clearance, free_distance, sweep_arc
+from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words
@@ -56,13 +56,13 @@ CROWDING_CELL = 1.5
 def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
     """Insert the root into an empty tree, and measure how far the car can drive from the target."""
     clear_tree(work)
+    gap = clearance(work, problem.target, problem) - problem.margin
     for gear in range(2):
         for turn in range(3):
             k = (turn - 1) * problem.car.max_curvature
-            distance = free_distance(
-                work, problem.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), problem
-            )
-            work.values[PlanValue.FREE_AT_TARGET + 3 * gear + turn] = distance
+            distance = (2.0 * gear - 1.0) * (60.0 if turn == 1 else TWO_PI / abs(k))
+            driven = sweep_arc(work, problem.target, gap, distance, k, problem)
+            work.values[PlanValue.FREE_AT_TARGET + 3 * gear + turn] = driven.distance
     push_open(work, Successor(problem.root, 0.0, 0.0, 0.0, NO_INDEX), problem)
 
 
@@ -196,13 +196,6 @@ def region_of(pose: Pose, problem: SearchProblem) -> int:
     return (((along * 256 + across) * 17 + turns) * 40503 // 16) % CROWDING_CELLS
 
 
-def heuristic(work: PlanningWork, pose: Pose, cost: float, problem: SearchProblem) -> float:
-    """Return a quick estimate of the cost [m] of a path through ``pose``, which has cost ``cost`` [m] so far."""
-    cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
-    turn = abs(wrap_angle(problem.target.heading - pose.heading)) / problem.car.max_curvature
-    return cost + problem.stage.resolution.heuristic_weight * (cost_to_go if cost_to_go > turn else turn)
-
-
 def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProblem) -> None:
     """Measure how far the car can drive from a node, in both gears at five curvatures."""
     gap = clearance(work, pose, problem) - problem.margin
@@ -247,8 +240,9 @@ def _push_driven(work: PlanningWork, here: Successor, distance: float, problem: 
 
 
 def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) -> None:
-    """Add a node unless its cell has one that is as cheap."""
-    key = key_of(successor.pose, successor.distance, problem)
+    """Add a node unless its cell has one that is as cheap; a quick estimate of the cost to go orders the queue."""
+    pose = successor.pose
+    key = key_of(pose, successor.distance, problem)
     slot = (key * 40503 // 64) % HASH_SIZE
     other = work.slot[slot]
     while other != NO_INDEX:
@@ -258,7 +252,10 @@ def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) 
             work.node_state[other] = NODE_CLOSED
         other = work.node_slot[other]
     node = add_node(work, successor, key, slot)
-    push_bucket(work, node, bucket_of(heuristic(work, successor.pose, successor.cost, problem)))
+    cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
+    turn = abs(wrap_angle(problem.target.heading - pose.heading)) / problem.car.max_curvature
+    weight = problem.stage.resolution.heuristic_weight
+    push_bucket(work, node, bucket_of(successor.cost + weight * (cost_to_go if cost_to_go > turn else turn)))
 
 
 def key_of(pose: Pose, distance: float, problem: SearchProblem) -> int:

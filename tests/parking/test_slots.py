@@ -175,6 +175,14 @@ def test_the_last_of_several_empty_bays_is_found_by_its_cars(bays: int, bay: flo
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(bays * bay, abs=0.11), "whatever sides measure"
 
 
+@pytest.mark.parametrize(("empty", "middle"), [(1, 2.6), (2, 5.2), (3, 5.2)])
+def test_of_three_empty_bays_the_middle_one_is_used_in_a_row_that_stands_across(empty: int, middle: float) -> None:
+    cars = [RowMember(x - 0.9, x + 0.9, 0.0, True, True) for x in (2.6 * (empty + 1), 0.0, -2.6, -5.2)]
+    row = SlotRow(Pose(), -1.0, (*cars, *(RowMember(),) * (MAX_MEMBERS - 4)), 4)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, ahead=cars[0], behind=cars[1])
+    assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)
+
+
 @pytest.mark.parametrize(("beyond", "edge"), [(0.15, 3.15), (0.5, 3.0), (-0.4, 2.6)])
 def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: float) -> None:
     """The corner seen from the road is the pillar's; one that stands in the gap narrows it."""

@@ -8,7 +8,7 @@ than the sensors reach. But where the vehicle stands is free, whatever was taken
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
+from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
 from controller_fmu.parking.geometry.polygons import (
     LOCAL_VERTICES,
@@ -47,8 +47,6 @@ QUAD_VERTICES = 4 * SLOT_QUADS
 ECHO_VERTICES = 4 * (MAX_REMEMBERED + MAX_SENSORS)
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
-INSIDE_MARGIN = 0.3
-"""What is inside a gap lies at most this [m] outside its edges: they are known to 0.1 m, odometry drifts by 0.2 m."""
 START_CLEARANCE = 0.05
 """What stands nearer [m] than this to a standing vehicle is taken to stand so far: else no path could begin there."""
 
@@ -160,18 +158,6 @@ def echo_away_from_vehicle(echo: EchoObstacle, outline: VehicleOutline, vehicle:
     distance = line_distance(side_start(echo), side_end(echo), outline_frame(vehicle), outline)
     shift = max(START_CLEARANCE - distance, 0.0)
     return echo._replace(x=echo.x + shift * echo.ux, y=echo.y + shift * echo.uy)
-
-
-def without_inside(landmark: Landmark, slot: SlotCandidate) -> Landmark:
-    """Return a landmark, or none if all of it lies inside the gap: the slot's corrected ends and depth stand for it."""
-    if landmark.type == LandmarkType.NONE:
-        return landmark
-    for point in (start_point(landmark), end_point(landmark)):
-        at = point_to_frame(point.x, point.y, slot.row.frame)
-        beyond = at.x < slot.behind.end - INSIDE_MARGIN or at.x > slot.ahead.start + INSIDE_MARGIN
-        if beyond or slot.row.side * at.y < slot.front - INSIDE_MARGIN:
-            return landmark
-    return Landmark()
 
 
 def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) -> Vertex:

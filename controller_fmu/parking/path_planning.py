@@ -30,7 +30,6 @@ from controller_fmu.parking.obstacle_map import (
     obstacle_map,
     with_echoes,
     without_explained,
-    without_inside,
 )
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.gear_segments import without_short_end
@@ -58,7 +57,7 @@ from modelkit.vocabulary import Pose
 
 def begin_plan(memory: ParkingMemory) -> ParkingMemory:
     """Return the memory with a new plan due; the first sample at standstill makes its request."""
-    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False, is_relaxed=False, failure=Reason.NONE))
+    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False, failure=Reason.NONE))
 
 
 def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -167,8 +166,6 @@ def continue_plan(
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
-    if status == PlanningStatus.GOAL_BLOCKED and memory.strategy == Strategy.SLOT and not plan.is_relaxed:
-        return memory._replace(plan=memory.plan._replace(is_relaxed=True, steps=0, plans=plan.plans - 1))
     is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED)
     is_blocked = is_blocked or memory.perception.remembered[-1].is_present
     reason = Reason.BLOCKED if is_blocked else Reason.NO_PATH
@@ -256,8 +253,6 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         return _with_pose_request(memory, inputs, params)
     slot = slot_in_map(memory, pose, params)
     beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
-    if memory.plan.is_relaxed:
-        beside = tuple(without_inside(landmark, slot) for landmark in beside)
     mapped = obstacle_map(beside, slot, outline, pose, _free_road(memory, params), params.mapping)
     half_angle = params.car.ultrasonic.half_angle
     before = memory.perception.remembered

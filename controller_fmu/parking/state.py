@@ -59,8 +59,6 @@ class PlanProgress(NamedTuple):
     """Done for the request; 0: none is in hand."""
     plans: int = 0
     is_found: bool = False
-    is_relaxed: bool = False
-    """The goal was blocked by what was measured inside the gap: planned between the slot's own limits alone."""
     is_optional: bool = False
     """The path in hand is free and only misses the goal: it is kept unless there is a better one."""
     failure: int = Reason.NONE

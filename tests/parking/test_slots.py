@@ -13,7 +13,6 @@ from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, Landmar
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import SensorPose
-from controller_fmu.parking.obstacle_map import without_inside
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import stands_in_slot
 from controller_fmu.parking.slots.candidate import (
@@ -327,15 +326,6 @@ def test_beside_a_kerb_parked_is_claimed_by_the_neighbours_line(deeper: float, c
     slot = slot._replace(behind=RowMember(end=0.0), ahead=RowMember(start=6.0))
     pose = Pose(3.0 - OUTLINE.centre_ahead, -OUTLINE.half_width - deeper, 0.0)
     assert stands_in_slot(slot, pose, ParkingParams()) == claims
-
-
-def test_what_is_inside_the_gap_can_be_left_to_the_slot() -> None:
-    """A corner heard in a turn lay in the goal: the plan was refused although the slot was free."""
-    slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(8.4, -0.9, 0.0, 4.4, 1.8)], 3, 5.5)
-    inside = Landmark(LandmarkType.SEGMENT, 5.9, -0.5, 0.0, start=-0.2, end=0.2)
-    assert without_inside(inside, slot).type == LandmarkType.NONE
-    assert without_inside(inside._replace(y=1.0), slot) == inside._replace(y=1.0)
-    assert without_inside(inside._replace(end=2.0), slot).type == LandmarkType.SEGMENT
 
 
 @pytest.mark.parametrize("open_ended", [False, True])

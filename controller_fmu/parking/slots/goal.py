@@ -121,7 +121,9 @@ def bay_width(row: SlotRow) -> float:
     for number in range(row.used - 1):
         ahead = row.members[number]
         behind = row.members[number + 1]
-        if ahead.start_known and behind.start_known and CAR_WIDTH < ahead.start - behind.start < 2.0 * CAR_WIDTH:
-            total += ahead.start - behind.start
+        is_known = ahead.start_known and ahead.end_known and behind.start_known and behind.end_known
+        pitch = 0.5 * (ahead.start + ahead.end - behind.start - behind.end)
+        if is_known and CAR_WIDTH < pitch < 2.0 * CAR_WIDTH:
+            total += pitch
             count += 1
     return total / count

@@ -177,7 +177,7 @@ def without_path(
     memory: ParkingMemory, reason: int, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ParkingMemory:
     """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
-    if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, params):
+    if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, True, params):
         return memory._replace(plan=memory.plan._replace(is_final=True))
     if memory.plan.is_optional:
         return memory._replace(plan=memory.plan._replace(is_found=True))
@@ -186,12 +186,16 @@ def without_path(
     return memory._replace(reason=reason)
 
 
-def is_acceptable(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether a vehicle at ``pose`` has arrived, if not as finely as was meant."""
+def is_acceptable(memory: ParkingMemory, pose: Pose, is_final: bool, params: ParkingParams) -> bool:
+    """Return whether a vehicle at ``pose`` has arrived, if not as finely as was meant.
+
+    Where no path leads nearer (``is_final``) the best estimate of the slot decides, however uncertain it is.
+    """
     if memory.strategy != Strategy.SLOT:
         accepted = params.final.accepted
         return is_near(pose, memory.plan.request.goal, accepted, accepted, params.final.accepted_heading)
-    return stands_in_slot(slot_in_map(memory, pose, params), pose, params)
+    confidence = 0.0 if is_final else params.slot.confidence
+    return stands_in_slot(slot_in_map(memory, pose, params), pose, confidence, params)
 
 
 def is_near(pose: Pose, goal: Pose, along: float, across: float, heading: float) -> bool:
@@ -208,13 +212,14 @@ def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> Slo
     return correct_slot(by_echoes, landmarks, outline, params.mapping)
 
 
-def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether a vehicle at ``pose`` is surely parked, as far as the slot is known, if not as finely as meant.
+def stands_in_slot(slot: SlotCandidate, pose: Pose, confidence: float, params: ParkingParams) -> bool:
+    """Return whether a vehicle at ``pose`` is parked, by ``confidence`` standard deviations [1] of its slot.
 
     Beside a kerb, too, it is so by where it stands beside its neighbours. Where the kerb leaves no pose that is surer
     the intended one counts.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    limits = params.slot._replace(confidence=confidence)
     room = 0.5 * (slot.ahead.start - slot.behind.end)
     along = params.final.accepted
     sigma = slot.middle_sigma
@@ -224,16 +229,16 @@ def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bo
         along = max(along, room - outline.half_length)
         sigma = slot.front_sigma
         flush = slot._replace(depth=UNKNOWN_DEPTH)
-        intended = abs(kerb_shift(slot, outline, params.slot)) + abs(params.drive.rolling_offset)
-    across = max(params.final.accepted - params.slot.confidence * sigma, min(intended, params.final.accepted))
-    turn = params.final.accepted_heading - params.slot.confidence * slot.row.heading_sigma
+        intended = abs(kerb_shift(slot, outline, limits)) + abs(params.drive.rolling_offset)
+    across = max(params.final.accepted - confidence * sigma, min(intended, params.final.accepted))
+    turn = params.final.accepted_heading - confidence * slot.row.heading_sigma
     overhang = overhang_of(slot, outline, pose)
-    most = most_overhang(slot, outline, params.slot)
+    most = most_overhang(slot, outline, limits)
     beside = slot.depth - 2.0 * outline.half_width + overhang
-    is_at_goal = is_near(pose, goal_pose(slot, outline, params.slot), along, params.final.position, turn)
-    if slot.type == SlotType.PARALLEL and (is_at_goal or params.slot.kerb_min < beside < params.slot.kerb_max):
+    is_at_goal = is_near(pose, goal_pose(slot, outline, limits), along, params.final.position, turn)
+    if slot.type == SlotType.PARALLEL and (is_at_goal or limits.kerb_min < beside < limits.kerb_max):
         across = max(across, most)
-    return is_near(pose, goal_pose(flush, outline, params.slot), along, across, turn) and overhang < most
+    return is_near(pose, goal_pose(flush, outline, limits), along, across, turn) and overhang < most
 
 
 def max_manoeuvres(memory: ParkingMemory, params: ParkingParams) -> int:

@@ -272,7 +272,7 @@ def is_lost(progress: PathProgress, params: ParkingParams) -> bool:
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
-    is_accepted = is_acceptable(memory, inputs.odometry, params)
+    is_accepted = is_acceptable(memory, inputs.odometry, memory.plan.is_final, params)
     if memory.strategy == Strategy.PULL_OUT or (memory.plan.is_final and is_accepted):
         return True
     if memory.strategy == Strategy.SLOT and not is_accepted:

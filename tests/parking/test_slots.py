@@ -315,7 +315,8 @@ def test_parked_is_claimed_only_where_two_sigma_of_the_slot_allow_it(
     ahead = OUTLINE.centre_ahead
     centre = Pose(goal.x + ahead * math.cos(goal.heading), goal.y + ahead * math.sin(goal.heading) + out, heading)
     pose = centre._replace(x=centre.x - ahead * math.cos(heading), y=centre.y - ahead * math.sin(heading))
-    assert stands_in_slot(slot, pose, ParkingParams()) == claims
+    assert stands_in_slot(slot, pose, 2.0, ParkingParams()) == claims
+    assert stands_in_slot(slot, pose, 0.0, ParkingParams()), "where no path leads nearer the best estimate decides"
 
 
 @pytest.mark.parametrize(("deeper", "claims"), [(0.08, True), (0.13, False)])
@@ -325,7 +326,7 @@ def test_beside_a_kerb_parked_is_claimed_by_the_neighbours_line(deeper: float, c
     slot = SlotCandidate(SlotType.PARALLEL, row=row, depth=2.0 * OUTLINE.half_width + 0.37, front_sigma=0.02)
     slot = slot._replace(behind=RowMember(end=0.0), ahead=RowMember(start=6.0))
     pose = Pose(3.0 - OUTLINE.centre_ahead, -OUTLINE.half_width - deeper, 0.0)
-    assert stands_in_slot(slot, pose, ParkingParams()) == claims
+    assert stands_in_slot(slot, pose, 2.0, ParkingParams()) == claims
 
 
 @pytest.mark.parametrize("open_ended", [False, True])

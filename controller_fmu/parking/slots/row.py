@@ -41,7 +41,7 @@ MAX_HIDDEN = 1.2
 """A hitch hides at most so much [m] of a front to either side: half of a cone of 30 deg, 2 m from the sensor."""
 UNEVEN_SIGMA = 0.1
 """How unevenly cars stand in a row, standard deviation [m]."""
-LINE_SIGMA = 0.2
+STAGGER_SIGMA = 0.2
 """And the middles of their sides, as measured from a vehicle whose odometry drifts [m]."""
 NO_MEMBER = 1e9
 """Position [m] along the row where there is no side."""
@@ -304,4 +304,4 @@ def _line_direction(row: SlotRow) -> RowDirection:
     middles = about_mean(sums)
     if middles.xx <= UNEVEN_SIGMA * UNEVEN_SIGMA:
         return RowDirection(0.0, PI)
-    return RowDirection(math.atan(middles.xy / middles.xx), LINE_SIGMA / math.sqrt(middles.xx))
+    return RowDirection(math.atan(middles.xy / middles.xx), STAGGER_SIGMA / math.sqrt(middles.xx))

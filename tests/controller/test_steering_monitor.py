@@ -10,7 +10,7 @@ from controller_fmu.common.steering_monitor import SteeringMonitorState, at_rest
 from modelkit.car import CarSteering
 from modelkit.random import seed_state, uniform
 from vehicle_fmu.interface import SteeringParams
-from vehicle_fmu.steering import SteeringState, pass_request, turn_steering_wheel
+from vehicle_fmu.steering import DELAY_CELLS, SteeringState, delay_request, pass_request, turn_steering_wheel
 
 LONGEST = 0.28
 TOLERANCE = 0.1
@@ -39,8 +39,11 @@ def drive(
 ) -> Driven:
     """Return the watch after ``stop`` s; ``broken(t, angle)`` is the wheel from the moment it returns a number."""
     angle, steering, watch, asked = 0.0, SteeringState(), at_rest(0.0, SteeringMonitorState().steering), 0.0
+    line: tuple[float, ...] = (0.0,) * DELAY_CELLS
     for k in range(round(stop * 1e9) // DT_NS):
-        steering = pass_request(steering, asked, params, k * DT_NS, (k + 1) * DT_NS)
+        span = (k * DT_NS, (k + 1) * DT_NS)
+        line = delay_request(line, asked, params.dead_time, *span) if params.dead_time > 0.0 else (asked,)
+        steering = pass_request(steering, line[0], params, *span)
         angle = turn_steering_wheel(angle, steering.lagged, CarSteering(rate_limit=rate), 0.0, DT_NS * 1e-9, 1.0)
         if broken is not None:
             angle = broken(k * DT_NS * 1e-9, angle)

@@ -109,7 +109,7 @@ static int64_t time_of(const Course *course) {
 static void note(const Runner *runner, const Course *course, double *kept) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
         const Kept *wanted = &runner->batch->kept[k];
-        if (is_at_end(wanted) || (wanted->values && !is_in(look(runner->when[k]), wanted->values))) continue;
+        if (wanted->values && !is_in(look(runner->when[k]), wanted->values)) continue;
         const double now = look(runner->kept[k]);
         const int nan = isnan(now) != 0;
         if (!runner->noted[k]) {
@@ -196,8 +196,6 @@ static int run(const Runner *runner, const double *params, const double *faults,
     }
     row[0] = (double)end;
     row[1] = (double)time_of(&course);
-    for (int64_t k = 0; k < runner->batch->kept_count; k++)
-        if (is_at_end(&runner->batch->kept[k])) row[2 + k] = look(runner->kept[k]);
     return 0;
 }
 

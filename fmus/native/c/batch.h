@@ -27,9 +27,6 @@ typedef struct {
     uint64_t values; /* 0: always */
 } Kept;
 
-/* Whether it is read once a run is over, and not noted before. */
-static int is_at_end(const Kept *kept) { return kept->how == LAST && !kept->values; }
-
 typedef struct {
     const Library *const *models;
     const Link *links;

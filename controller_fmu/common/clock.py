@@ -45,15 +45,12 @@ def refusal_output() -> RefusedOutput:
 
 def _is_usable(params: Clocked) -> bool:
     target = params.target
-    car = params.car
-    steering = car.steering
+    steering = params.car.steering
     lock = steering.angle_limit / steering.ratio if steering.ratio > 0.0 else 0.0
     return (
         is_finite(target.x + target.y + target.heading)
-        and is_finite(car.wheelbase + car.front_overhang + car.rear_overhang + car.width)
-        and is_finite(params.sample_time + steering.rate_limit)
-        and car.wheelbase > 0.0
-        and car.width > 0.0
+        and is_finite(params.car.wheelbase + params.sample_time + steering.rate_limit)
+        and params.car.wheelbase > 0.0
         and params.sample_time >= 1e-4
         and steering.rate_limit > 0.0
         and 0.0 < lock < 1.5

@@ -2,9 +2,9 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.params import HOUSE
 from modelkit.signal import Signal
 
-HOUSE = "project default; the source states none"
 CAR_LENGTH = 4.4
 CAR_LENGTH_SIGMA = 0.5
 CAR_WIDTH = 1.8

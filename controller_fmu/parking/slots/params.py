@@ -3,9 +3,9 @@
 from typing import Annotated, NamedTuple
 
 from controller_fmu.common.external_slot import SlotKind
+from controller_fmu.common.params import HOUSE
 from modelkit.signal import Signal
 
-HOUSE = "project default; the source states none"
 GBT = "GB/T 41630"
 
 

@@ -53,7 +53,7 @@ def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
 def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
     f = drawn()
     found = parameters(f, np.arange(1, 201))
-    valid = is_valid(f)
+    valid = is_valid(f | found)
     short = (f["kind"] == 0) & (f["overhang"] >= HITCH) & (f["overhang_length"] > f["extra"]) & (f["pillar"] != 2)
     assert short.any()
     assert not valid[short].any()
@@ -188,22 +188,30 @@ def test_what_would_have_been_touched_standing(speed: float, walks_at: float, un
 
 
 @pytest.mark.parametrize(
-    ("changed", "valid", "end"),
+    ("changed", "end"),
     [
-        ({}, True, PARKED),
-        ({}, False, FALSE),
-        ({"within parallel": False}, True, FALSE),
-        ({"touched.speed": -0.06}, True, MOVING),
-        ({"touched.speed": 0.05}, True, STANDING),
-        ({"touched.speed": 0.5, "touched.steering_active": 0.0}, True, DRIVER),
-        ({"touched.speed": 0.5, "touched.takeover": 1.0}, True, DRIVER),
-        ({"touched.speed": 0.0, "touched.steering_active": 0.0}, True, STANDING),
+        ({}, PARKED),
+        ({"within parallel": False}, FALSE),
+        ({"touched.speed": -0.06}, MOVING),
+        ({"touched.speed": 0.05}, STANDING),
+        ({"touched.speed": 0.5, "touched.steering_active": 0.0}, DRIVER),
+        ({"touched.speed": 0.5, "touched.takeover": 1.0}, DRIVER),
+        ({"touched.speed": 0.0, "touched.steering_active": 0.0}, STANDING),
     ],
 )
-def test_how_a_run_ends(changed: dict[str, float], valid: bool, end: str) -> None:
+def test_how_a_run_ends(changed: dict[str, float], end: str) -> None:
     from orchestrator.studies.parking.parkings import GBT
     from orchestrator.studies.sweep.columns import WITHIN
 
     within = changed.get("within parallel", True)
     row = {**ROW, "touched.takeover": 0.0, "touched.steering_active": 1.0, **changed, WITHIN.format(GBT[1]): within}
-    assert end_of(row, valid) == end
+    assert end_of(row) == end
+
+
+def test_a_wheel_stop_that_is_detected_under_the_tail_leaves_no_slot() -> None:
+    f = {name: values[:4] for name, values in drawn().items()}
+    f |= {"kind": np.ones(4), "bays": np.zeros(4), "bin": np.zeros(4), "extra": np.ones(4)}
+    f |= {"behind": np.array([2, 2, 2, 1]), "kerb_height": np.array([0.12, 0.05, 0.12, 0.12])}
+    f |= {"depth": np.array([0.1, 0.1, 1.5, 0.1])}
+    found = parameters(f, np.arange(1, 5))
+    assert is_valid(f | found).tolist() == [False, True, True, True]

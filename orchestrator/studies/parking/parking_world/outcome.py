@@ -1,9 +1,11 @@
 """What became of a run, whatever system drove it: contact first, then a claim, judged by the scene.
 
 Contact is any contact. Moving means above ``MOVING_SPEED``. ``valid`` follows from the scene alone: ISO 16787's
-shortest slot for the car, less what stands out into it, and nothing in it. Where there are bay lines, they are the
-truth: one bay, whichever. A contact is ``unavoidable`` if a moving object would have touched the car even if that had
-stood for ``STOOD_FOR``; where it would have stood follows from its speed and steering angle at the contact.
+shortest slot for the car, less what stands out into it, nothing in it, and no wheel stop under the tail, as in
+``apa-world``. A claim is judged by where the vehicle stands, in slots shorter than that as well. Where there are bay
+lines, they are the truth: one bay, whichever. A contact is ``unavoidable`` if a moving object would have touched the
+car even if that had stood for ``STOOD_FOR``; where it would have stood follows from its speed and steering angle at
+the contact.
 """
 
 import math
@@ -25,6 +27,7 @@ from orchestrator.studies.parking.parking_world.bays import in_bays, stands_in_a
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import NEIGHBOUR, OVERHANG, has_bin, overhang_of
 from orchestrator.studies.parking.parkings import GBT
+from orchestrator.studies.parking.world.feasibility import ends_beyond_tail
 from orchestrator.studies.sweep.columns import WITHIN
 from orchestrator.studies.sweep.study.study import Columns, DerivedParameter
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
@@ -50,7 +53,7 @@ FALSE, PARKED, FAILED, ENDLESS = "false parked", "parked", "gave up", "endless"
 ENDS = {
     MOVING: f"contact while the system drives, above {MOVING_SPEED} m/s",
     STANDING: f"contact at no more than {MOVING_SPEED} m/s",
-    FALSE: "claims to be parked outside the slot, beyond GB/T 41630, or where there is no slot",
+    FALSE: "claims to be parked outside the slot or beyond GB/T 41630",
     ENDLESS: "neither parked nor given up at the stop time",
     PARKED: "parked within GB/T 41630, no contact",
     FAILED: "gave up, no contact",
@@ -58,7 +61,7 @@ ENDS = {
 }
 """How a run ends, the worst first."""
 COLUMNS = {
-    "valid": Metric("1", "1: by the scene alone, the slot has ISO 16787's room for the car, and nothing in it"),
+    "valid": Metric("1", "1: by the scene alone, the slot has ISO 16787's room for the car, and nothing is in it"),
     "unavoidable": Metric("1", "1: a moving object would have touched a car that had stood for 1 s, too"),
 }
 MOVING_OBJECTS = (*NEIGHBOUR.values(), OVERHANG, FIRST_LEG, SECOND_LEG)
@@ -66,25 +69,24 @@ EMPTY = Obstacle()._asdict()
 
 
 def _outcome_columns(columns: Columns) -> Mapping[str, Array]:
-    valid, bays, in_bay = is_valid(columns), in_bays(columns), stands_in_a_bay(columns)
+    bays, in_bay = in_bays(columns), stands_in_a_bay(columns)
     rows = [
         dict(zip(columns, row, strict=True))
         for row in zip(*(np.asarray(item).tolist() for item in columns.values()), strict=True)
     ]
     for number in np.flatnonzero(bays):
         rows[number][WITHIN.format(GBT[int(rows[number]["kind"]) + 1])] = bool(in_bay[number])
-    ends = [end_of(row, bool(ok)) for row, ok in zip(rows, valid, strict=True)]
     return {
-        "valid": valid.astype(float),
+        "valid": is_valid(columns).astype(float),
         "unavoidable": np.array([float(is_unavoidable(row)) for row in rows]),
-        "end": np.array(ends, dtype=object),
+        "end": np.array([end_of(row) for row in rows], dtype=object),
     }
 
 
 def is_valid(columns: Columns) -> NDArray[np.bool_]:
     """Return whether each slot is one for its car."""
     f = with_bays({name: np.asarray(columns[name]) for name in FACTORS_OF_VALID})
-    return np.asarray((f["extra"] >= overhang_of(f)) & ~has_bin(f))
+    return np.asarray((f["extra"] >= overhang_of(f)) & ~has_bin(f)) & ends_beyond_tail(columns)
 
 
 FACTORS_OF_VALID = (
@@ -117,7 +119,7 @@ def is_moving(obstacle: Obstacle, time_ns: int) -> bool:
     return bool((obstacle.speed_x or obstacle.speed_y) and obstacle.moves_at <= time_ns * 1e-9 <= obstacle.halts_at)
 
 
-def end_of(row: Mapping[str, Any], valid: bool) -> str:
+def end_of(row: Mapping[str, Any]) -> str:
     """Return how a run ended, one of ``ENDS``."""
     if not math.isnan(row["touched.speed"]):
         if row["touched.takeover"] or not row["touched.steering_active"]:
@@ -125,7 +127,7 @@ def end_of(row: Mapping[str, Any], valid: bool) -> str:
             return STANDING if after else DRIVER
         return MOVING if abs(row["touched.speed"]) > MOVING_SPEED else STANDING
     if row["outcome"] == "parked" or row["reason"].startswith(BEYOND):
-        return PARKED if valid and row[WITHIN.format(GBT[int(row["kind"]) + 1])] else FALSE
+        return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] else FALSE
     return FAILED if row["outcome"] == "failed" else ENDLESS
 
 

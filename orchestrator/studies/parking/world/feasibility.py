@@ -6,6 +6,7 @@ Both are said of the drawn factors alone, before anything is driven, and know no
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -28,12 +29,12 @@ MAX_SEARCH_SPEED = 20.0
 
 def feasibility_columns(columns: Columns) -> Mapping[str, Array]:
     """Return the two columns of ``COLUMNS``, 1 or 0 of each run."""
-    found = (is_valid(columns), is_possible(columns))
+    found = (ends_beyond_tail(columns), is_possible(columns))
     return {name: column.astype(float) for name, column in zip(COLUMNS, found, strict=True)}
 
 
-def is_valid(columns: Columns) -> Array:
-    """Return whether each slot has room for its car before whatever is detected behind it.
+def ends_beyond_tail(columns: Columns) -> NDArray[np.bool_]:
+    """Return whether nothing that is detected lies under the tail of a car that stands flush in its slot.
 
     No slot is shorter or shallower than ISO 16787 asks for the car, however neighbours stand. But a wheel stop that
     is detected lies before the slot's end by the rear overhang less what the tyre reaches beyond the axle, and is a

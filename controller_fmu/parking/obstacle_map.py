@@ -98,13 +98,10 @@ def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -
     """Return whether both ends of a landmark lie within ``tolerance`` [m] of an edge of a map that is given."""
     for point in (start_point(landmark), end_point(landmark)):
         is_near = False
-        first = 0
         for number in range(len(known)):
             a = known[number]
             if a.polygon > 0:
-                if number > 0 and known[number - 1].polygon != a.polygon:
-                    first = number
-                b = known[next_index(known, number, first)]
+                b = known[next_index(known, number)]
                 square = segment_distance_squared(point.x - a.x, point.y - a.y, b.x - a.x, b.y - a.y)
                 is_near = is_near or square < tolerance * tolerance
         if not is_near:
@@ -186,8 +183,8 @@ def _echo_vertex(echo: EchoObstacle, number: int) -> Vertex:
     corner = number % 4
     polygon = MAX_LANDMARKS + 1 + SLOT_QUADS + number // 4
     if not echo.is_unexplained:
-        end = side_start(echo) if corner < 2 else side_end(echo)
-        return Vertex(end.x, end.y, polygon)
+        end = side_start(echo) if corner == 0 else side_end(echo)
+        return Vertex(end.x, end.y, polygon if corner < 2 else 0)
     half = 0.5 * ECHO_SIZE
     dx = -half if corner == 0 or corner == 3 else half
     dy = -half if corner < 2 else half
@@ -212,9 +209,9 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Point) -> tu
         Quad(first, a.front, a.end, behind),
         Quad(b.start, b.front, last, ahead),
         Quad(a.end, end, b.start, end + ROW_EXTENSION),
-        Quad(first - ROW_EXTENSION, a.front, first, behind, slot.slope, a.end),
-        Quad(last, b.front, last + ROW_EXTENSION, ahead, slot.slope, b.start),
-        Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, slot.slope, road.x),
+        Quad(first - ROW_EXTENSION, a.front, first, behind, slot.row.slope, a.end),
+        Quad(last, b.front, last + ROW_EXTENSION, ahead, slot.row.slope, b.start),
+        Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, slot.row.slope, road.x),
         Quad(road.x, road.y, road.x + ROW_EXTENSION, min(a.front, b.front)),
     )
 

@@ -362,5 +362,5 @@ def _free_road(memory: ParkingMemory, params: ParkingParams) -> Point:
     at = point_to_frame(search.pose.x, search.pose.y, slot.row.frame)
     reach = car.ultrasonic.max_range
     ahead = car.wheelbase + car.front_overhang + reach
-    across = (0.5 * car.width + reach) * math.sqrt(1.0 + slot.slope * slot.slope)
-    return Point(at.x + ahead, slot.row.side * (at.y + slot.slope * ahead) - across)
+    across = (0.5 * car.width + reach) * math.sqrt(1.0 + slot.row.slope * slot.row.slope)
+    return Point(at.x + ahead, slot.row.side * (at.y + slot.row.slope * ahead) - across)

@@ -35,7 +35,6 @@ from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
     ObjectTrack,
-    TrackStatus,
     closing_speed,
     is_yielded_to,
     range_in_blind_zone,
@@ -129,7 +128,7 @@ def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgr
     In a gap too short for that the vehicle stands across the road whatever its neighbours are.
     """
     slot = search.slot
-    is_inferred = params.slot.wanted == SlotKind.NONE and not slot.is_external and slot.slope == 0.0
+    is_inferred = params.slot.wanted == SlotKind.NONE and not slot.is_external and slot.row.slope == 0.0
     least_length = car_length(params.car) + params.slot.room_along
     is_wide = slot.ahead.start - slot.behind.end >= least_length
     if not is_inferred or not is_wide or search.slot_filter.absent < ABSENT_ECHOES:
@@ -193,7 +192,7 @@ def _with_facing(
 
 def is_at_rest(track: ObjectTrack) -> bool:
     """Return whether a track is confirmed by enough echoes, and its object stands."""
-    return track.status == TrackStatus.CONFIRMED and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
+    return track.missed == 0 and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
 
 
 def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> ObjectTrack:
@@ -208,7 +207,7 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     is_echo = found.status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE)
     before_track = perception.tracks[number]
     measured = reading
-    if found.status == ReadingStatus.BLIND_ZONE and before_track.status != TrackStatus.NONE:
+    if found.status == ReadingStatus.BLIND_ZONE and before_track.confirmations > 0:
         measured = range_in_blind_zone(before_track, approach, reading)
     track = update_track(before_track, is_echo, measured, approach, found.variance, sensors.cycle)
     static = static_approach(before, sensor)

@@ -166,12 +166,7 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     )
     outline = vehicle_outline(params.car, 1.0)
     verdict = monitor_collision(
-        motion,
-        outline,
-        memory.perception.local_map.landmarks,
-        memory.perception.echoes,
-        params.monitor,
-        params.mapping,
+        motion, outline, memory.perception.local_map.landmarks, memory.perception.echoes, params.monitor, params.mapping
     )
     if verdict.is_blocked and not verdict.is_mapped and is_approached(memory.perception.echoes):
         memory = memory._replace(perception=memory.perception._replace(yields=yield_cycles(params)))
@@ -223,15 +218,13 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
 def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
     """Return the bits of how the vehicle moves on its path."""
     progress = memory.progress
-    speed = inputs.measured_speed
-    standing = abs(speed) <= params.threshold.standstill
+    context = FollowingContext(params.car, params.drive)
+    standing = abs(inputs.measured_speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
     straight = abs(wheel) <= params.threshold.steering_angle_reached
     rolling_time = 0.0
     if memory.state == ParkingState.STEERING:
-        rolling_time = standstill_before(
-            progress.path, progress.segment, FollowingContext(params.car, params.drive)
-        ).after
+        rolling_time = standstill_before(progress.path, progress.segment, context).after
     tolerance = max(params.threshold.steering_angle_reached, params.car.steering.rate_limit * rolling_time)
     blocked = memory.verdict.is_blocked
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
@@ -247,7 +240,7 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
-        | bit(Condition.MUST_STOP, must_stop(progress, speeds, FollowingContext(params.car, params.drive)) or halts)
+        | bit(Condition.MUST_STOP, must_stop(progress, speeds, context) or halts)
         | bit(Condition.REPLAN, standing and (lost or blocked_long or is_displaced))
         | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)

@@ -7,10 +7,9 @@ import pytest
 
 from controller_fmu.parking.geometry.outline import extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import (
-    ChainEvent,
     ChainUpdate,
     as_point,
-    chain_event,
+    chain_ending,
     edge_guess,
     first_of_body,
     fit_chain,
@@ -21,6 +20,7 @@ from controller_fmu.parking.map.chain_update import (
 )
 from controller_fmu.parking.map.echo_chain import (
     EchoChain,
+    Ending,
     append_echo,
     begin_chain,
     continues,
@@ -268,7 +268,7 @@ def test_the_extent_of_the_outline_within_a_box_is_exact() -> None:
 def test_a_side_is_open_where_it_leaves_the_range_of_the_sensor(measured: float, is_edge: bool) -> None:
     """On a pass oblique to the row a car begins to be measured at 5 m, though it began long before."""
     echo = Measurement(DOWN, ReadingStatus.ECHO, measured, 1e-4)
-    chain = next_chain(EchoChain(lost=3), echo, ChainEvent.CONTINUES)
+    chain = next_chain(EchoChain(lost=3), echo, Ending.CONTINUES)
     assert chain.begins_at_edge == is_edge
     beyond = Measurement(DOWN._replace(x=1.0), ReadingStatus.NO_ECHO, 5.0, 1e-4)
-    assert (chain_event(chain._replace(lost=3), beyond) == ChainEvent.ENDS_AT_EDGE) == is_edge
+    assert (chain_ending(chain._replace(lost=3), beyond) == Ending.EDGE) == is_edge

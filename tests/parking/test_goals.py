@@ -76,7 +76,7 @@ def test_the_road_has_a_slope_in_the_frame_of_an_angled_slot(slope: int) -> None
     assert candidate.reason == Reason.NONE
     assert candidate.ahead.start == pytest.approx(2.6)
     a, b = (point_to_frame(x, 0.0, candidate.row.frame) for x in (0.0, width))
-    assert (b.y - a.y) / (b.x - a.x) == pytest.approx(candidate.slope)
+    assert (b.y - a.y) / (b.x - a.x) == pytest.approx(candidate.row.slope)
     assert goal_pose(candidate, OUTLINE, SLOT).heading == pytest.approx(heading)
 
 

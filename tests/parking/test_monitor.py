@@ -32,7 +32,6 @@ from controller_fmu.parking.monitor.collision_monitor import (
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
     ObjectTrack,
-    TrackStatus,
     closing_speed,
     is_yielded_to,
     range_in_blind_zone,
@@ -185,9 +184,7 @@ def test_an_echo_nearer_than_the_corner_expected_may_come_from_anywhere_in_the_c
     """A pillar whose road side was mapped was touched by its next corner, at the boundary of an outer sensor's cone."""
     params = ParkingParams()
     sensor = sensor_pose(params.car.ultrasonic.mounts[3], params.car.ultrasonic.half_angle, Pose())
-    corner = ObjectTrack(
-        TrackStatus.CONFIRMED, 0.22, confirmations=9, expected=0.40, ux=sensor.axis_x, uy=sensor.axis_y
-    )
+    corner = ObjectTrack(0.22, confirmations=9, expected=0.40, ux=sensor.axis_x, uy=sensor.axis_y)
     echo = echo_obstacle(corner, 3, ParkingSystemInput(), params)
     axis = math.atan2(sensor.axis_y, sensor.axis_x)
     for end, side in ((side_start(echo), -1.0), (side_end(echo), 1.0)):
@@ -200,7 +197,7 @@ def test_an_echo_nearer_than_the_corner_expected_may_come_from_anywhere_in_the_c
 
 def test_an_echo_in_no_known_direction_is_no_obstacle() -> None:
     """One that had come from beyond the monitored range stood ahead in the odometry frame, inside the vehicle."""
-    beyond = ObjectTrack(TrackStatus.CONFIRMED, 1.49, confirmations=9)
+    beyond = ObjectTrack(1.49, confirmations=9)
     assert not echo_obstacle(beyond, 11, ParkingSystemInput(), ParkingParams()).is_present
 
 
@@ -261,7 +258,7 @@ def test_a_track_finds_the_closing_speed() -> None:
     for _ in range(12):
         distance -= 1.5 * 0.04
         track = update_track(track, True, distance, 0.0, 1e-4, 0.04)
-    assert track.status == TrackStatus.CONFIRMED
+    assert (track.confirmations, track.missed) == (12, 0)
     assert closing_speed(with_expectation(track, 2.0, 1.0, 0.0, EchoSurface(), True)) == pytest.approx(1.5, abs=0.2)
     assert closing_speed(with_expectation(track, 1.3, 1.0, 0.0, EchoSurface(), False)) == 0.0, (
         "the vehicle approaches a wall"
@@ -329,10 +326,10 @@ def test_a_track_coasts_and_ends() -> None:
     for _ in range(4):
         track = update_track(track, True, 1.0, 0.0, 1e-4, 0.04)
     track = update_track(track, False, 0.0, 0.0, 1e-4, 0.04)
-    assert track.status == TrackStatus.COASTING
+    assert (track.confirmations, track.missed) == (4, 1)
     for _ in range(6):
         track = update_track(track, False, 0.0, 0.0, 1e-4, 0.04)
-    assert track.status == TrackStatus.NONE
+    assert track == ObjectTrack()
 
 
 def test_every_state_has_a_way_out_and_faults_win() -> None:

@@ -115,10 +115,8 @@ def _transition_at(
     path: PlannedPath, whole: GearSegment, segment: int, at: float, context: FollowingContext
 ) -> CurvatureJoint:
     """Return the joint at the end of ``segment``, ``at`` [m] from the start of the gear segment."""
-    if segment >= whole.last:
-        return CurvatureJoint()
     offset = ROOMY_FACTOR * _max_offset(path, context)
-    if offset <= 0.0:
+    if segment >= whole.last or offset <= 0.0:
         return CurvatureJoint()
     longest = 2.0 * min(at, whole.length - at)
     k0 = path.segments[segment].curvature
@@ -128,11 +126,8 @@ def _transition_at(
     transition = transition_length(offset, k1 - k0, longest)
     base = context.car.wheelbase
     swing = math.atan(base * k1) - math.atan(base * k0)
-    return (
-        CurvatureJoint(transition, k1 - k0)
-        if steering_speed_limit(swing / transition, context) >= MIN_ROLLING_SPEED
-        else CurvatureJoint()
-    )
+    is_driven = steering_speed_limit(swing / transition, context) >= MIN_ROLLING_SPEED
+    return CurvatureJoint(transition, k1 - k0) if is_driven else CurvatureJoint()
 
 
 def steering_speed_limit(turning: float, context: FollowingContext) -> float:
@@ -205,13 +200,11 @@ def upcoming_stop(path: PlannedPath, segment: int, left: float, context: Followi
 def standstill_before(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
     """Return the standstill before ``segment``; ``path.used``: that at the end of the path."""
     before = reference_at(path, segment - 1, 0.0, context).curvature if segment > 0 else 0.0
-    next_curvature = (
-        reference_at(path, segment, abs(path.segments[segment].distance), context).curvature
-        if segment < path.used
-        else 0.0
-    )
-    offset = _overrun_before(path, segment, context)
     ends = segment >= path.used
+    next_curvature = 0.0
+    if not ends:
+        next_curvature = reference_at(path, segment, abs(path.segments[segment].distance), context).curvature
+    offset = _overrun_before(path, segment, context)
     settled = SETTLING_TIME if ends else 0.0
     if offset <= 0.0 or path.margin < MIN_MARGIN:
         return StandstillSteering(next_curvature=next_curvature)
@@ -220,9 +213,8 @@ def standstill_before(path: PlannedPath, segment: int, context: FollowingContext
     early = SteeringWhileMoving()
     late = SteeringWhileMoving()
     if segment > 0:
-        early = _steering_while_moving(
-            2.0 * offset if ends else offset, before, next_curvature, context.drive.deceleration, context
-        )
+        room = 2.0 * offset if ends else offset
+        early = _steering_while_moving(room, before, next_curvature, context.drive.deceleration, context)
     if not ends:
         late = _steering_while_moving(offset, next_curvature, before, START_ACCELERATION, context)
     same_gear = segment > 0 and not ends and path.segments[segment - 1].distance * path.segments[segment].distance > 0.0
@@ -262,10 +254,8 @@ def _steering_while_moving(
 
 def steers_for_next(ahead: UpcomingStop, context: FollowingContext) -> bool:
     """Return whether the standstill ahead is so near that the steering wheel turns to what comes behind it."""
-    return (
-        ahead.standstill.before > 0.0
-        and ahead.left < 0.5 * context.drive.deceleration * ahead.standstill.before * ahead.standstill.before
-    )
+    before = ahead.standstill.before
+    return before > 0.0 and ahead.left < 0.5 * context.drive.deceleration * before * before
 
 
 def _max_offset(path: PlannedPath, context: FollowingContext) -> float:

@@ -25,12 +25,15 @@ class ObstacleMap(NamedTuple):
     vertices: tuple[Vertex, ...] = (Vertex(),) * LOCAL_VERTICES
 
 
-def next_index(vertices: tuple[Vertex, ...], index: int, first: int) -> int:
-    """Return the vertex that the edge from ``index`` leads to; ``first`` is the first of its polygon."""
-    last = index + 1 >= len(vertices)
-    after = 0 if last else index + 1
-    goes_on = not last and vertices[after].polygon == vertices[index].polygon
-    return after if goes_on else first
+def next_index(vertices: tuple[Vertex, ...], index: int) -> int:
+    """Return the vertex that the edge from ``index`` leads to: the next one, or the first of its polygon."""
+    after = min(index + 1, len(vertices) - 1)
+    if after > index and vertices[after].polygon == vertices[index].polygon:
+        return after
+    first = index
+    while first > 0 and vertices[first - 1].polygon == vertices[index].polygon:
+        first -= 1
+    return first
 
 
 def segment_distance_squared(x: float, y: float, dx: float, dy: float) -> float:

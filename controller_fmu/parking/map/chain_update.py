@@ -5,7 +5,6 @@ by side; the fit of two segments must then explain the echoes better than that o
 """
 
 import math
-from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import planar_distance
@@ -14,6 +13,7 @@ from controller_fmu.parking.map.echo_chain import (
     MAX_EDGE_RANGE,
     ChainEcho,
     EchoChain,
+    Ending,
     append_echo,
     begin_chain,
     continues,
@@ -45,7 +45,7 @@ from controller_fmu.parking.map.segment_fit import (
     fit_segment,
 )
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predict_range_to_segment
-from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
+from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose, boundary_point
 from modelkit.maths import wrap_angle
 
 MIN_ECHOES = 4
@@ -103,43 +103,33 @@ class ChainUpdate(NamedTuple):
     chain: EchoChain = EchoChain()
 
 
-class ChainEvent(IntEnum):
-    """What a reading means for a chain."""
-
-    CONTINUES = 0
-    ENDS_HIDDEN = 1
-    """Something nearer hides the body, or the vehicle turns back."""
-    ENDS_AT_EDGE = 2
-    """The body's edge has been passed."""
-
-
-def chain_event(chain: EchoChain, reading: Measurement) -> int:
-    """Return the ``ChainEvent`` of a reading."""
+def chain_ending(chain: EchoChain, reading: Measurement) -> int:
+    """Return the ``Ending`` of a chain that a reading shows: hidden, too, where the vehicle turns back."""
     if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
-        return ChainEvent.ENDS_HIDDEN
+        return Ending.HIDDEN
     if chain.used == 0:
-        return ChainEvent.CONTINUES
+        return Ending.CONTINUES
     if reading.status == ReadingStatus.NO_ECHO:
         passed = is_passed(chain._replace(lost=chain.lost + 1), reading.sensor)
-        end = ChainEvent.ENDS_AT_EDGE if last_range(chain) < MAX_EDGE_RANGE else ChainEvent.ENDS_HIDDEN
-        return end if passed else ChainEvent.CONTINUES
+        end = Ending.EDGE if last_range(chain) < MAX_EDGE_RANGE else Ending.HIDDEN
+        return end if passed else Ending.CONTINUES
     if is_turned_back(chain, reading.sensor):
-        return ChainEvent.ENDS_HIDDEN
+        return Ending.HIDDEN
     if continues(chain, reading.sensor, reading.range, reading.variance):
-        return ChainEvent.CONTINUES
-    return ChainEvent.ENDS_AT_EDGE if reading.range > last_range(chain) else ChainEvent.ENDS_HIDDEN
+        return Ending.CONTINUES
+    return Ending.EDGE if reading.range > last_range(chain) else Ending.HIDDEN
 
 
-def next_chain(chain: EchoChain, reading: Measurement, event: int) -> EchoChain:
+def next_chain(chain: EchoChain, reading: Measurement, ending: int) -> EchoChain:
     """Return the chain after a reading: with one more echo, or the one that begins."""
     if reading.status == ReadingStatus.BLIND_ZONE or reading.status == ReadingStatus.INVALID:
         return EchoChain()
     if reading.status == ReadingStatus.NO_ECHO:
         lost = chain.lost + 1
-        return chain._replace(lost=lost) if event == ChainEvent.CONTINUES else EchoChain(lost=lost)
+        return chain._replace(lost=lost) if ending == Ending.CONTINUES else EchoChain(lost=lost)
     if chain.used == 0:
         return begin_chain(reading.sensor, reading.range, chain.lost > 0 and reading.range < MAX_EDGE_RANGE)
-    if event != ChainEvent.CONTINUES:
+    if ending != Ending.CONTINUES:
         hides = not is_turned_back(chain, reading.sensor) and reading.range < last_range(chain)
         return begin_chain(reading.sensor, reading.range, hides)
     return append_echo(chain, reading.sensor, reading.range)
@@ -316,10 +306,10 @@ def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: flo
     The end came into the cone at any place of the ``step`` [m] before that echo (evenly distributed).
     """
     along = inwards * along_of(line, echo.x, echo.y)
+    at = sensor._replace(x=echo.x, y=echo.y, axis_x=echo.axis_x, axis_y=echo.axis_y)
     for side in (-1.0, 1.0):
-        ray_x = echo.axis_x * sensor.cone_cos - side * echo.axis_y * sensor.cone_sin
-        ray_y = echo.axis_y * sensor.cone_cos + side * echo.axis_x * sensor.cone_sin
-        along = max(along, inwards * along_of(line, echo.x + echo.range * ray_x, echo.y + echo.range * ray_y))
+        point = boundary_point(at, echo.range, side)
+        along = max(along, inwards * along_of(line, point.x, point.y))
     opening = CONE_SIGMA * echo.range
     return EndGuess(inwards * (along - 0.5 * step), math.sqrt(opening * opening + step * step / 12.0))
 

@@ -6,6 +6,7 @@ one that ends in a nearer echo was only hidden.
 """
 
 import math
+from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import planar_distance
@@ -28,6 +29,17 @@ MAX_EDGE_RANGE = 4.5
 """A side whose outermost echo is farther [m] may go on beyond the range of the sensor."""
 MAX_TURN_COS = 0.95
 """A chain ends when the sensor's axis has turned by 18 deg: it measures another side."""
+
+
+class Ending(IntEnum):
+    """How the echoes of a body go on beyond an end of what has been measured of it."""
+
+    CONTINUES = 0
+    """Without a jump: by echoes that may be of it, too."""
+    EDGE = 1
+    """To a farther echo, or to none: the body ends."""
+    HIDDEN = 2
+    """To a nearer echo, of a body that may hide more of it; or it is not known."""
 
 
 class ChainEcho(NamedTuple):

@@ -5,14 +5,13 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.map.chain_update import (
     MIN_ECHOES,
-    ChainEvent,
     ChainUpdate,
-    chain_event,
+    chain_ending,
     fit_chain,
     is_fit_due,
     next_chain,
 )
-from controller_fmu.parking.map.echo_chain import EchoChain
+from controller_fmu.parking.map.echo_chain import EchoChain, Ending
 from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundaries, index_of_side, update_oblique_sides
@@ -116,13 +115,13 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         index = index_of_side(local_map.landmarks, oblique.passed[boundary], params)
         if index >= 0:
             local_map = with_landmark(local_map, index, oblique.passed[boundary])
-    event = chain_event(local_map.chains[at], measurement)
-    ends = not oblique.is_oblique and event != ChainEvent.CONTINUES
+    ending = chain_ending(local_map.chains[at], measurement)
+    ends = not oblique.is_oblique and ending != Ending.CONTINUES
     if ends and local_map.chains[at].used >= MIN_ECHOES:
         ended = ChainUpdate(local_map.landmarks, local_map.chains[at])
-        ended = fit_chain(ended, measurement, event == ChainEvent.ENDS_AT_EDGE, params)
+        ended = fit_chain(ended, measurement, ending == Ending.EDGE, params)
         local_map = local_map._replace(landmarks=ended.landmarks)
-    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], measurement, event)
+    chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], measurement, ending)
     local_map = _with_chain(local_map, at, chain)
     if is_fit_due(local_map.chains[at], measurement):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])

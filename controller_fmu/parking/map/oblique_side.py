@@ -8,13 +8,12 @@ that turns by q moves the boundary's point by r q, whatever it measures: then th
 """
 
 import math
-from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
-from controller_fmu.parking.map.chain_update import is_better, same_side
-from controller_fmu.parking.map.echo_chain import MAX_EDGE_RANGE
+from controller_fmu.parking.map.chain_update import CONE_SIGMA, is_better, same_side
+from controller_fmu.parking.map.echo_chain import MAX_EDGE_RANGE, Ending
 from controller_fmu.parking.map.landmark import (
     Landmark,
     LandmarkType,
@@ -25,7 +24,7 @@ from controller_fmu.parking.map.landmark import (
     with_offset_variance,
 )
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
+from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose, boundary_point
 from modelkit.geometry import NO_HIT, Point
 from modelkit.maths import PI, wrap_angle
 
@@ -42,24 +41,12 @@ OBLIQUE_MARGIN = 0.08
 """A side's normal is turned by more than the half cone and this [rad]: cones open by up to 4 deg more."""
 SQUARE_MARGIN = 0.2
 """And by less than a right angle less this [rad]: along a side across the path the range tells no direction."""
-CONE_TANGENT = 0.08
-"""How far the boundary may be off, standard deviation of its tangent (26 to 34 deg instead of 30)."""
 EDGE_JUMP = 0.25
 """Two echoes in a row that differ by more [m] are of two bodies: a boundary point moves by less at each step."""
 MAX_LOST = 3
 """Cycles without an echo that are dropouts."""
 CONE_BOUNDARIES = 2
 """Of a cone: to the left and to the right of its axis."""
-
-
-class SideEnding(IntEnum):
-    """How the ranges go on beyond an end of a side."""
-
-    SMOOTH = 0
-    EDGE = 1
-    """To a farther echo, or to none: the side ends."""
-    HIDDEN = 2
-    """To a nearer echo, of a body that may hide more of the side."""
 
 
 class BoundaryRun(NamedTuple):
@@ -72,7 +59,7 @@ class BoundaryRun(NamedTuple):
     """At the first of them."""
     range: float = 0.0
     """Of the last echo [m]; ``NO_HIT`` after none, 0 before the first reading."""
-    begins: int = SideEnding.HIDDEN
+    begins: int = Ending.HIDDEN
     lost: int = 0
     """Cycles without an echo since the last."""
 
@@ -108,7 +95,7 @@ def update_oblique_sides(boundaries: ConeBoundaries, reading: Measurement) -> Ob
             side = Landmark() if _is_turned(run, reading.sensor) else side
             update = update._replace(passed=update.passed[:boundary] + (side,) + update.passed[boundary + 1 :])
         run = next_run(run, reading, point, over)
-        now = side_of(run, reading.sensor, turn, int(SideEnding.HIDDEN), reading.variance)
+        now = side_of(run, reading.sensor, turn, int(Ending.HIDDEN), reading.variance)
         update = update._replace(
             boundaries=ConeBoundaries(runs[:boundary] + (run,) + runs[boundary + 1 :]),
             is_oblique=update.is_oblique or now.type != LandmarkType.NONE,
@@ -124,13 +111,6 @@ def index_of_side(landmarks: tuple[Landmark, ...], new: Landmark, params: Mappin
     if other < 0:
         return free_index(landmarks)
     return -1 if is_better(landmarks[other], new) else other
-
-
-def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
-    """Return the point of the cone's boundary, to the left (1) or right (-1) of the axis, at a range [m]."""
-    ux = sensor.axis_x * sensor.cone_cos - turn * sensor.axis_y * sensor.cone_sin
-    uy = sensor.axis_y * sensor.cone_cos + turn * sensor.axis_x * sensor.cone_sin
-    return Point(sensor.x + measured * ux, sensor.y + measured * uy)
 
 
 def is_over(run: BoundaryRun, reading: Measurement, point: Point) -> bool:
@@ -171,10 +151,10 @@ def with_point(run: BoundaryRun, point: Point, measured: float) -> BoundaryRun:
 
 
 def side_ending(inner: float, outer: float) -> int:
-    """Return the ``SideEnding`` of a side: its outermost echo is at ``inner`` [m], the next beyond at ``outer`` [m]."""
+    """Return the ``Ending`` of a side: its outermost echo is at ``inner`` [m], the next beyond at ``outer`` [m]."""
     if outer > inner + EDGE_JUMP:
-        return SideEnding.EDGE if inner < MAX_EDGE_RANGE else SideEnding.HIDDEN
-    return SideEnding.HIDDEN if outer < inner - EDGE_JUMP else SideEnding.SMOOTH
+        return Ending.EDGE if inner < MAX_EDGE_RANGE else Ending.HIDDEN
+    return Ending.HIDDEN if outer < inner - EDGE_JUMP else Ending.CONTINUES
 
 
 def line_of(run: BoundaryRun, variance: float) -> Landmark:
@@ -218,8 +198,8 @@ def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, varian
         return Landmark()
     foot = along_of(line, sensor.x, sensor.y)
     first_is_near = (first - last) * (foot - last) > 0.0
-    first_known = run.begins == SideEnding.EDGE or (first_is_near and run.begins == SideEnding.SMOOTH)
-    last_known = ends == SideEnding.EDGE or (not first_is_near and ends == SideEnding.SMOOTH)
+    first_known = run.begins == Ending.EDGE or (first_is_near and run.begins == Ending.CONTINUES)
+    last_known = ends == Ending.EDGE or (not first_is_near and ends == Ending.CONTINUES)
     forward = first < last
     side = line._replace(
         start=min(first, last),
@@ -242,9 +222,9 @@ def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: f
 
     ``angle`` [rad]: of its normal against the sensor's axis, ``off_boundary``: against the boundary of the cone.
     """
-    opening = CONE_TANGENT * math.sin(off_boundary)
+    opening = CONE_SIGMA * math.sin(off_boundary)
     shift = opening * measured
-    end_variance = CONE_TANGENT * CONE_TANGENT * measured * measured
+    end_variance = CONE_SIGMA * CONE_SIGMA * measured * measured
     return with_offset_variance(side, shift * shift)._replace(
         hh=side.hh + opening * opening * math.sin(angle) * math.sin(angle),
         start_variance=end_variance,

@@ -116,13 +116,10 @@ def range_to_polygons(sensor: SensorPose, vertices: tuple[Vertex, ...], max_rang
         sensor.x + max_range * sensor.axis_x,
         sensor.y + max_range * sensor.axis_y,
     )
-    first = 0
     for number in range(len(vertices)):
         a = vertices[number]
         if a.polygon > 0:
-            if number > 0 and vertices[number - 1].polygon != a.polygon:
-                first = number
-            b = vertices[next_index(vertices, number, first)]
+            b = vertices[next_index(vertices, number)]
             predicted = predict_range_to_segment(sensor, Point(a.x, a.y), Point(b.x, b.y))
             if predicted.distance < nearest.distance:
                 nearest = predicted

@@ -9,6 +9,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from modelkit.car import CarUltrasonic, SensorMount
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 MAX_SENSORS = 12
@@ -96,6 +97,13 @@ def in_field_of_view(sensor: SensorPose, x: float, y: float) -> bool:
     along = dx * sensor.axis_x + dy * sensor.axis_y
     across = abs(dy * sensor.axis_x - dx * sensor.axis_y)
     return across * sensor.cone_cos <= along * sensor.cone_sin
+
+
+def boundary_point(sensor: SensorPose, measured: float, turn: float) -> Point:
+    """Return the point of the cone's boundary, to the left (1) or right (-1) of the axis, at a range [m]."""
+    ux = sensor.axis_x * sensor.cone_cos - turn * sensor.axis_y * sensor.cone_sin
+    uy = sensor.axis_y * sensor.cone_cos + turn * sensor.axis_x * sensor.cone_sin
+    return Point(sensor.x + measured * ux, sensor.y + measured * uy)
 
 
 def range_variance(noise: float, resolution: float) -> float:

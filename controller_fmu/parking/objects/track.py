@@ -6,7 +6,6 @@ coasts over ``MAX_COASTING`` missed ones and ends.
 """
 
 import math
-from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.parking.measurement.predicted_range import EchoSurface
@@ -30,26 +29,18 @@ NEARBY_RANGE = 1.0
 """Within this range [m] a moving object is yielded to wherever it moves: a step or two."""
 
 
-class TrackStatus(IntEnum):
-    """Life of a track."""
-
-    NONE = 0
-    TENTATIVE = 1
-    CONFIRMED = 2
-    COASTING = 3
-
-
 class ObjectTrack(NamedTuple):
     """Range [m] and rate [m/s] of an object along a sensor's direction, own motion removed, with covariance."""
 
-    status: int = TrackStatus.NONE
     range: float = 0.0
     rate: float = 0.0
     rr: float = 0.0
     rv: float = 0.0
     vv: float = 0.0
     confirmations: int = 0
+    """Echoes so far; 0: there is no track."""
     missed: int = 0
+    """Cycles without an echo since the last."""
     unexplained: int = 0
     """Cycles for which it still counts as an object that the map does not hold."""
     expected: float = 0.0
@@ -67,30 +58,26 @@ def update_track(
     track: ObjectTrack, is_echo: bool, measured: float, own_approach: float, variance: float, dt: float
 ) -> ObjectTrack:
     """Return the track after ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer; ``variance`` in m2."""
-    begun = ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
-    if track.status == TrackStatus.NONE:
+    begun = ObjectTrack(measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1)
+    if track.confirmations == 0:
         return begun if is_echo else track
     predicted = _predict(track, own_approach, dt)
     if not is_echo:
-        missed = track.missed + 1
-        if missed > MAX_COASTING or track.status == TrackStatus.TENTATIVE:
-            return ObjectTrack()
-        return predicted._replace(status=TrackStatus.COASTING, missed=missed)
+        ends = track.missed >= MAX_COASTING or track.confirmations < MIN_CONFIRMATIONS
+        return ObjectTrack() if ends else predicted._replace(missed=track.missed + 1)
     s = predicted.rr + variance
     y = measured - predicted.range
     if y * y > INNOVATION_GATE * s:
         return begun
     kr = predicted.rr / s
     kv = predicted.rv / s
-    confirmations = track.confirmations + 1
     return ObjectTrack(
-        TrackStatus.CONFIRMED if confirmations >= MIN_CONFIRMATIONS else TrackStatus.TENTATIVE,
         predicted.range + kr * y,
         predicted.rate + kv * y,
         predicted.rr - kr * predicted.rr,
         predicted.rv - kr * predicted.rv,
         predicted.vv - kv * predicted.rv,
-        confirmations,
+        track.confirmations + 1,
         0,
         track.unexplained,
         approach=track.approach,
@@ -140,9 +127,7 @@ def with_expectation(
 
 def closing_speed(track: ObjectTrack) -> float:
     """Return how fast [m/s] an unexplained object of a confirmed track approaches by itself, two sigma above 0."""
-    if track.unexplained == 0:
-        return 0.0
-    if track.status != TrackStatus.CONFIRMED and track.status != TrackStatus.COASTING:
+    if track.unexplained == 0 or track.confirmations < MIN_CONFIRMATIONS:
         return 0.0
     if track.rate > 0.0 or track.rate * track.rate < 4.0 * track.vv:
         return 0.0

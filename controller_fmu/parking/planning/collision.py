@@ -44,12 +44,7 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
         bx = work.edge_x2[edge] - x
         by = work.edge_y2[edge] - y
         best = edge_distance_squared(
-            ax * cos + ay * sin,
-            ay * cos - ax * sin,
-            bx * cos + by * sin,
-            by * cos - bx * sin,
-            car,
-            best,
+            ax * cos + ay * sin, ay * cos - ax * sin, bx * cos + by * sin, by * cos - bx * sin, car, best
         )
     return math.sqrt(best)
 

@@ -7,12 +7,7 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.geometry.polygons import clip_to_box, segment_distance_squared
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE
 from controller_fmu.parking.planning.problem import SearchGrid, SearchProblem, SearchRegion
-from controller_fmu.parking.planning.work import (
-    BUCKET_COUNT,
-    NO_INDEX,
-    PlanCount,
-    PlanningWork,
-)
+from controller_fmu.parking.planning.work import BUCKET_COUNT, NO_INDEX, PlanCount, PlanningWork
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -174,30 +169,17 @@ def _cost_to_go_cell(x: float, y: float, region: SearchRegion) -> int:
 
 
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
-    """Copy the polygons' edges into the frame of ``origin``; returns how many lie in or near the search region."""
+    """Copy the polygons' edges into the frame of ``origin``; returns how many lie in or near the search region.
+
+    A line has one edge, not a second one back.
+    """
     count = 0
     for vertex in range(work.counts[PlanCount.VERTEX_COUNT]):
         if work.corner_of[vertex] > 0:
             after = next_corner(work, vertex)
-            if not is_repeated(work, vertex, after):
+            if after != vertex - 1:
                 count = add_edge(work, count, _as_from(origin, work, vertex), _as_from(origin, work, after), region)
     return count
-
-
-def is_repeated(work: PlanningWork, vertex: int, after: int) -> bool:
-    """Return whether one of the three edges before in the same polygon joins the same two points: one of no area."""
-    for back in range(1, 4):
-        if vertex >= back and work.corner_of[vertex - back] == work.corner_of[vertex]:
-            a = vertex - back
-            b = a + 1
-            is_start = _is_at(work, vertex, a) or _is_at(work, vertex, b)
-            if is_start and (_is_at(work, after, a) or _is_at(work, after, b)):
-                return True
-    return False
-
-
-def _is_at(work: PlanningWork, vertex: int, other: int) -> bool:
-    return work.corner_x[vertex] == work.corner_x[other] and work.corner_y[vertex] == work.corner_y[other]
 
 
 def _as_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:

@@ -100,12 +100,7 @@ def least_word_cost(work: PlanningWork, start: Pose, end: Pose, request: WordReq
 
 
 def list_words(
-    work: PlanningWork,
-    start: Pose,
-    end: Pose,
-    request: WordRequest,
-    problem: SearchProblem,
-    only_cheaper: bool = False,
+    work: PlanningWork, start: Pose, end: Pose, request: WordRequest, problem: SearchProblem, only_cheaper: bool = False
 ) -> int:
     """List the words from ``start`` to ``end`` that cost less than the limit [m] in ``work``; returns how many."""
     k = problem.car.max_curvature

@@ -88,21 +88,16 @@ def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
 def is_spent(work: PlanningWork, problem: SearchProblem) -> bool:
     """Return whether the search has done all the work it may."""
     most = problem.stage.max_expansions
-    full = work.counts[PlanCount.NODE_COUNT] > MAX_NODES - MAX_SUCCESSORS
-    return (
-        full
-        or work.counts[PlanCount.EXPANSIONS] >= most
-        or work.counts[PlanCount.EVALUATIONS] >= EVALUATIONS_PER_EXPANSION * most
-    )
+    is_full = work.counts[PlanCount.NODE_COUNT] > MAX_NODES - MAX_SUCCESSORS
+    is_expanded = work.counts[PlanCount.EXPANSIONS] >= most
+    return is_full or is_expanded or work.counts[PlanCount.EVALUATIONS] >= EVALUATIONS_PER_EXPANSION * most
 
 
 def is_settled(work: PlanningWork) -> bool:
     """Return whether a path is found and the expansions since then have been enough to find a cheaper one."""
     found_at = work.counts[PlanCount.FIRST_FOUND_AT]
-    return (
-        work.counts[PlanCount.BEST_NODE] != NO_INDEX
-        and work.counts[PlanCount.EXPANSIONS] > found_at + found_at // 2 + 20
-    )
+    is_found = work.counts[PlanCount.BEST_NODE] != NO_INDEX
+    return is_found and work.counts[PlanCount.EXPANSIONS] > found_at + found_at // 2 + 20
 
 
 def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:

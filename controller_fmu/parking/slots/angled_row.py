@@ -24,13 +24,7 @@ from controller_fmu.parking.map.params import (
     CAR_WIDTH_SIGMA,
     MappingParams,
 )
-from controller_fmu.parking.slots.candidate import (
-    LOG_TEN,
-    MAX_CAR,
-    MAX_POST,
-    length_log_likelihood,
-    row_point,
-)
+from controller_fmu.parking.slots.candidate import LOG_TEN, MAX_CAR, MAX_POST, length_log_likelihood, row_point
 from controller_fmu.parking.slots.row import (
     ASKEW_VARIANCE,
     MAX_MEMBERS,

@@ -89,8 +89,6 @@ class SlotCandidate(NamedTuple):
     front_sigma: float = 0.0
     """Standard deviation of that line across the row [m], and of the middle of the gap along it."""
     middle_sigma: float = 0.0
-    slope: float = 0.0
-    """Tangent of the road's angle to the frame's x axis: in an angled row the frame is square to the way in."""
     is_nose_in: bool = False
     is_external: bool = False
     missing: float = 0.0
@@ -145,13 +143,10 @@ def _candidate(
     params: MappingParams,
 ) -> SlotCandidate:
     """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
-    ahead = row.members[number]
     behind = row.members[min(number + 1, MAX_MEMBERS - 1)]
-    found = SlotCandidate(row=row, behind=behind, ahead=ahead)
+    found = SlotCandidate(row=row, behind=behind, ahead=row.members[number])
     found = _between_posts(found, landmarks, 2.0 * outline.half_width, params)
-    behind = found.behind
-    ahead = found.ahead
-    width = ahead.start - behind.end
+    width = found.ahead.start - found.behind.end
     if width < 2.0 * outline.half_width:
         return SlotCandidate()
     found = found._replace(front=_front_of(found, number, outline.half_width))
@@ -173,7 +168,7 @@ def _candidate(
     leads_on = row.slope * row.side > 0.0
     is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
     missing = max((least_length if parallel else least_width) - width, 0.0)
-    return found._replace(type=kind, reason=reason, slope=row.slope, is_nose_in=is_nose_in, missing=missing)
+    return found._replace(type=kind, reason=reason, is_nose_in=is_nose_in, missing=missing)
 
 
 def _front_of(found: SlotCandidate, number: int, half_width: float) -> float:
@@ -286,7 +281,7 @@ def gap_depth(
     depth = UNKNOWN_DEPTH
     for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]
-        if landmark.type != LandmarkType.NONE and is_confirmed(landmark, params):
+        if is_confirmed(landmark, params):
             for sample in range(SAMPLE_COUNT):
                 along = landmark.start + (landmark.end - landmark.start) * sample / (SAMPLE_COUNT - 1)
                 at = segment_point(landmark, along)

@@ -72,12 +72,11 @@ def _between_corners(given: ExternalSlot, vehicle: Pose) -> SlotCandidate:
     depth = depth_of(given)
     return SlotCandidate(
         type=SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR,
-        row=SlotRow(frame, side),
+        row=SlotRow(frame, side, slope=0.0 if parallel else math.tan(vehicle.heading - heading)),
         behind=RowMember(-length, 0.0, 0.0, True, True, front, front),
         ahead=RowMember(b.x, b.x + length, side * b.y, True, True, front, front),
         front=front,
         depth=depth if depth < UNKNOWN_DEPTH else UNKNOWN_DEPTH,
-        slope=0.0 if parallel else math.tan(vehicle.heading - heading),
         is_nose_in=given.kind == SlotKind.NOSE_IN,
         is_external=True,
     )

@@ -30,9 +30,8 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         heading = candidate.row.frame.heading
     else:
         room = candidate.depth - 2.0 * outline.half_length - _distance_behind(candidate, outline, params)
-        uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.slope == 0.0 else 0.0
-        inward = 0.5 * uneven
-        deep = candidate.front + outline.half_length + min(inward, room)
+        uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.row.slope == 0.0 else 0.0
+        deep = candidate.front + outline.half_length + min(0.5 * uneven, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
         middle = _bay_middle(candidate)
     centre = row_point(candidate.row, middle, deep)

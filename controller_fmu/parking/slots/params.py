@@ -20,8 +20,7 @@ class SlotParams(NamedTuple):
     room_across: Annotated[float, Signal("m", "perpendicular slot: width beyond the vehicle's", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "largest overhang beyond the neighbours' line", 0.0, 3.0, GBT)] = 0.15
     confidence: Annotated[
-        float,
-        Signal("1", "standard deviations of the slot by which a parked pose is within limits", 0.0, 6.0, HOUSE),
+        float, Signal("1", "standard deviations of the slot by which a parked pose is within limits", 0.0, 6.0, HOUSE)
     ] = 2.0
     distance_behind: Annotated[
         float, Signal("m", "distance to a slot's end: the monitor's and two standard deviations", 0.05, 2.0, HOUSE)

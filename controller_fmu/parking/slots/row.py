@@ -9,14 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
-from controller_fmu.parking.map.landmark import (
-    MAX_LANDMARKS,
-    Landmark,
-    LandmarkType,
-    end_point,
-    length_of,
-    start_point,
-)
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from modelkit.geometry import Point
@@ -200,27 +193,19 @@ def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: 
 
 def _with_next(row: SlotRow, member: RowMember) -> SlotRow:
     """Return the row with a member farther behind; one that touches the last is joined to it."""
-    at = row.used - 1
-    joins = row.used > 0 and row.members[max(at, 0)].start - member.end < MEMBER_GAP
-    if joins:
-        last = row.members[max(at, 0)]
+    last = row.members[max(row.used - 1, 0)]
+    if row.used > 0 and last.start - member.end < MEMBER_GAP:
         longer = member if member.end - member.start > last.end - last.start else last
-        first = member if member.start < last.start else last
-        joined = RowMember(
-            first.start,
-            last.end,
-            longer.front,
-            first.start_known,
-            last.end_known,
-            first.start_front,
-            last.end_front,
-            first.start_sigma,
-            last.end_sigma,
-            first.start_length,
-            last.end_length,
-            longer.gap_evidence,
-        )
-        return with_member(row, at, joined)
+        joined = last._replace(front=longer.front, gap_evidence=longer.gap_evidence)
+        if member.start < last.start:
+            joined = joined._replace(
+                start=member.start,
+                start_known=member.start_known,
+                start_front=member.start_front,
+                start_sigma=member.start_sigma,
+                start_length=member.start_length,
+            )
+        return with_member(row, row.used - 1, joined)
     return with_member(row, row.used, member)._replace(used=row.used + 1) if row.used < MAX_MEMBERS else row
 
 

@@ -21,13 +21,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     predict_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
-from controller_fmu.parking.slots.candidate import (
-    UNKNOWN_DEPTH,
-    SlotCandidate,
-    SlotType,
-    into_heading,
-    row_point,
-)
+from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.correction import correction_gate
 from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow, is_too_short_for_car
 from modelkit.geometry import Point

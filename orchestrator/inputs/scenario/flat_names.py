@@ -1,9 +1,15 @@
 """From nested YAML sections to flat names: ``{driver: {profile: [[0, 1.5]]}}`` -> ``driver.profile[1].at``."""
 
+import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from orchestrator.inputs.text.errors import BadInput, format_value, suggestion
+
+SEPARATOR = re.compile(r"[.\[]")
+"""Between the steps of a name: ``driver``, ``driver.profile``, ``driver.profile[1]``, ``driver.profile[1].at``."""
 
 
 def flatten_section(
@@ -26,7 +32,8 @@ class FlatLayer(NamedTuple):
 
 def flatten_layer(section: Mapping[str, object], names: Iterable[str], *, file: object, key: str) -> FlatLayer:
     """Return what :func:`flatten_section` does, with the arrays that are written as a whole."""
-    found = _Found(list(names), {}, set(), file, key)
+    known = dict.fromkeys(names)
+    found = _Found(known, _members(tuple(known)), {}, set(), file, key)
     for name, value in section.items():
         _flatten(str(name), value, found)
     return FlatLayer(found.values, frozenset(found.arrays))
@@ -51,7 +58,10 @@ def merge_nested(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str
 
 
 class _Found(NamedTuple):
-    known: list[str]
+    known: Mapping[str, None]
+    """The names, in order."""
+    members: Mapping[str, list[str]]
+    """See ``_members``."""
     values: dict[str, object]
     arrays: set[str]
     file: object
@@ -63,8 +73,8 @@ def _flatten(name: str, value: object, found: _Found) -> None:
     if name in known:
         found.values[name] = value
         return
-    children = _children(name, known)
-    if not children:
+    children = found.members.get(name)
+    if children is None:
         close = suggestion(name, known, f"{key}.")
         raise BadInput(f"unknown{close or '; known are ' + _roots(known)}", file=file, key=f"{key}.{name}")
     if isinstance(value, Mapping):
@@ -86,16 +96,17 @@ def _flatten(name: str, value: object, found: _Found) -> None:
         )
 
 
-def _children(name: str, known: list[str]) -> list[str]:
-    found: dict[str, None] = {}
-    for full in known:
-        if full.startswith(name) and full[len(name) : len(name) + 1] in (".", "["):
-            rest = full[len(name) + 1 :]
-            end = min((rest.index(mark) for mark in ".[" if mark in rest), default=len(rest))
-            found[full[: len(name) + 1 + end]] = None
-    return list(found)
+@lru_cache(maxsize=64)
+def _members(known: tuple[str, ...]) -> Mapping[str, list[str]]:
+    """Return each group and array of ``known`` -> the full names of its members, in order."""
+    found: dict[str, dict[str, None]] = {}
+    for name in known:
+        steps = [*(name[: mark.start()] for mark in SEPARATOR.finditer(name)), name]
+        for group, member in pairwise(steps):
+            found.setdefault(group, {})[member] = None
+    return {group: list(members) for group, members in found.items()}
 
 
-def _roots(known: list[str]) -> str:
+def _roots(known: Iterable[str]) -> str:
     roots = dict.fromkeys(name.split(".")[0].split("[")[0] for name in known)
     return ", ".join(roots)

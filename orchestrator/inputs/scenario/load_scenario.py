@@ -1,6 +1,7 @@
 """From a name or a file to a complete scenario: bases, car, ``--set`` values, limits, all merged and checked."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from copy import deepcopy
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -187,10 +188,20 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
         )
     if len(seen) >= MAX_EXTENDED:
         raise BadInput(f"a chain of more than {MAX_EXTENDED} files", file=seen[0], key="extends")
-    content = _resolve_files(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
+    content = _resolve_files(_content_of(path), path)
     base = content.get("extends")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
+
+
+def _content_of(path: Path) -> dict[str, Any]:
+    if path.suffix == SUFFIX:
+        return ssp_scenario(path)
+    return deepcopy(_shipped_content(path)) if path.is_relative_to(LIBRARY) else read_mapping(path)
+
+
+_shipped_content = cache(read_mapping)
+"""Of a file that does not change while this process lives."""
 
 
 def _resolve_files(content: dict[str, Any], path: Path) -> dict[str, Any]:
@@ -244,7 +255,7 @@ def _parameters(
         variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
     }
     for variable in ours:
-        if variable.name.rsplit(".", 1)[-1] == "seed" and variable.name not in result:
+        if f".{variable.name}".endswith(".seed") and variable.name not in result:
             result[variable.name] = seed
     return result
 

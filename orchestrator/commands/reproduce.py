@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Reproduce, write pictures and result.json, print. Returns 0 if every check holds, else 1."""
-    from orchestrator.studies.papers.figure_files import write_figures
+    from orchestrator.studies.papers.figure_files import write_figures, write_pictures
     from orchestrator.studies.papers.table import print_reproduction
     from orchestrator.studies.papers.table_files import csv_text, latex_text, summary_lines
 
@@ -63,15 +63,16 @@ def run(arguments: argparse.Namespace) -> int:
         return _print_bibtex(names)
     functions = [(name, paper(name)) for name in names]
     drive = _driver(arguments.fmus)
-    results = []
+    results, found = [], []
     for name, function in functions:
         out: Path = arguments.out or Path("runs/reproduce") / name
         if arguments.out is not None and len(names) > 1:
             out = arguments.out / name
         with lock_folder(out):
-            result = function(out, drive)
-            text = json.dumps(result.as_json(), indent=2)
-            write_whole(out / "result.json", text + "\n")
+            result = function(drive)
+            pictures = [str(picture) for picture in write_pictures(name, drive, out)]
+            found.append({**result.as_json(), "figures": pictures})
+            write_whole(out / "result.json", json.dumps(found[-1], indent=2) + "\n")
         results.append(result)
         if arguments.figures is not None:
             write_figures(name, drive, arguments.figures, arguments.dpi)
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.csv or arguments.latex:
         print((csv_text if arguments.csv else latex_text)(results), end="")
     elif arguments.json:
-        print(json.dumps([result.as_json() for result in results], indent=2))
+        print(json.dumps(found, indent=2))
     elif len(results) > 1:
         print("\n".join(summary_lines(results)))
     return PARKED if all(result.passed for result in results) else NOT_PARKED

@@ -1,7 +1,5 @@
 """Every number that the reproduction of the HSIC paper promises."""
 
-from pathlib import Path
-
 import pytest
 
 from controller_fmu.hsic.characteristic_states import Characteristic
@@ -10,8 +8,8 @@ from orchestrator.studies.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
-def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return reproduce(tmp_path_factory.mktemp("hsic"), by_default)
+def reproduction(by_default: Drive) -> Reproduction:
+    return reproduce(by_default)
 
 
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
@@ -25,7 +23,3 @@ def test_each_of_the_twelve_states_is_reached_by_a_shipped_scenario(reproduction
     assert set(reached) == {state.name for state in Characteristic} - {"NONE"}
     assert len(reached) == 12
     assert set(reached.values()) <= set(SCENARIOS)
-
-
-def test_figure_is_written(reproduction: Reproduction) -> None:
-    assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)

@@ -1,11 +1,11 @@
 """The APA source: L_min against a search, smooth curvature, corners as inputs, outcomes and limits of the system."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import splev, splrep
 
+from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.outline import pose_along_arc
 from modelkit.car import Car, largest_curvature
 from modelkit.geometry import Box, boxes_gap, outline
@@ -13,7 +13,6 @@ from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.slot_sizes import ParkingType, library_slot_sizes, shortest_slot
-from orchestrator.studies.papers.apa_figure import DRIVING_STATES, draw_apa
 from orchestrator.studies.papers.result import (
     CONCLUSION,
     OWN,
@@ -33,6 +32,10 @@ CORNERS = "apa-external-slot"
 """Parks in a slot whose corners are inputs, where the sensors by themselves find none."""
 CARS = ("guo2015", "zhang2022")
 """Shipped cars; those of CommonRoad turn their front wheels by 52 deg and more."""
+DRIVING_STATES = tuple(
+    int(state)
+    for state in (ParkingState.STEERING, ParkingState.DRIVING, ParkingState.STOPPING, ParkingState.STRAIGHTENING)
+)
 LOCK_FRACTION = 0.95
 """Planned over largest curvature."""
 MAX_SOURCE_SPEED = 5.0 / 3.6
@@ -57,13 +60,13 @@ NOTES = [
 ]
 
 
-def reproduce(out: Path, drive: Drive) -> Reproduction:
-    """Return the source's formulas and numbers beside ours; writes apa.png to ``out``."""
+def reproduce(drive: Drive) -> Reproduction:
+    """Return the source's formulas and numbers beside ours."""
     rows = UNTESTED + [row for name in CARS for row in _length_rows(name)] + _curvature_rows()
     runs = [drive(name) for name in SCENARIOS]
     rows += [row for driven in runs for row in _run_rows(driven)]
     rows += _corner_rows(drive(CORNERS))
-    return Reproduction("apa", TITLE, rows, [draw_apa(runs[0], runs[1], out / "apa.png")], NOTES)
+    return Reproduction("apa", TITLE, rows, NOTES)
 
 
 def car_named(name: str) -> Car:

@@ -1,8 +1,9 @@
-"""The papers' figures one by one: PNG, SVG, PDF, the data as CSV and the command; or why there is none."""
+"""The figures of the papers: as pictures, or as PNG, SVG, PDF, CSV with the command; or why there is none."""
 
 import csv
 import io
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,12 @@ from matplotlib.figure import Figure
 
 from fmus.files import write_whole
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.presentation.drawing.run_figure import check_figure, save_figure, style_context
+from orchestrator.presentation.drawing.run_figure import save_figure, style_context
 from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.studies.papers.result import Drive
 
 FORMATS = (".png", ".svg", ".pdf")
+PICTURE_DPI = 110
 
 
 def write_figures(paper: str, drive: Drive, folder: Path, dpi: int = 150) -> list[PaperFigure]:
@@ -23,22 +25,34 @@ def write_figures(paper: str, drive: Drive, folder: Path, dpi: int = 150) -> lis
     if not 10 <= dpi <= 2400:
         raise BadInput(f"--dpi {dpi}: expected 10 to 2400")
     folder.mkdir(parents=True, exist_ok=True)
-    figures = [item for item in FIGURES if item.paper == paper]
-    for item in figures:
-        if item.draw is None:
-            continue
-        runs = [drive(name) for name in item.scenarios]
-        with style_context():
-            figure = item.draw(runs)
+    for name, figure in draw_figures(paper, drive):
         for suffix in FORMATS:
-            path = folder / f"{item.name}{suffix}"
-            check_figure(path)
-            save_figure(figure, path, dpi)
-        write_whole(folder / f"{item.name}.csv", data_of(figure))
+            save_figure(figure, folder / f"{name}{suffix}", dpi)
+        write_whole(folder / f"{name}.csv", data_of(figure))
+    figures = [item for item in FIGURES if item.paper == paper]
     entries = [entry_of(item) for item in figures]
     write_whole(folder / f"{paper}-figures.json", json.dumps(entries, indent=2) + "\n")
     write_whole(folder / f"{paper}.md", gallery_text(figures))
     return figures
+
+
+def write_pictures(paper: str, drive: Drive, folder: Path) -> list[Path]:
+    """Write every figure of ``paper`` as PNG to ``folder``; return their paths."""
+    paths = []
+    for name, figure in draw_figures(paper, drive):
+        paths.append(folder / f"{name}.png")
+        save_figure(figure, paths[-1], PICTURE_DPI)
+    return paths
+
+
+def draw_figures(paper: str, drive: Drive) -> Iterator[tuple[str, Figure]]:
+    """Yield name and figure of those that have a counterpart, in order."""
+    for item in FIGURES:
+        if item.paper == paper and item.draw is not None:
+            runs = [drive(name) for name in item.scenarios]
+            with style_context():
+                figure = item.draw(runs)
+            yield item.name, figure
 
 
 def entry_of(item: PaperFigure) -> dict[str, Any]:

@@ -6,7 +6,6 @@ is about a printed number, a conclusion of the paper, or what this project reach
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from modelkit.vocabulary import Pose
 from orchestrator.evaluation.verdict.summary import Event
 from orchestrator.studies.papers.guo2015_case5 import fit_rows
 from orchestrator.studies.papers.guo2015_drivers import obeying_rows
-from orchestrator.studies.papers.guo2015_figure import draw_case
 from orchestrator.studies.papers.guo2015_windows import HEADING_TOLERANCE, POSITION_TOLERANCE, START, window_rows
 from orchestrator.studies.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
 
@@ -73,22 +71,18 @@ NOTES = [
 ]
 
 
-def reproduce(out: Path, drive: Drive) -> Reproduction:
-    """Return printed and measured numbers; writes guo2015-caseN.png to ``out``."""
+def reproduce(drive: Drive) -> Reproduction:
+    """Return printed and measured numbers."""
     rows = table_2()
-    figures = []
     for case in CASES:
         name = f"guo2015-case{case}"
-        runs = [drive(name), drive(f"{name}-105")]
-        extra = [drive("guo2015-case1-cwpt")] if case == 1 else []
-        for driven in (*runs, *extra):
-            rows += case_rows(case, driven)
-        figures.append(draw_case(case, runs + extra, out / f"{name}.png"))
+        for run in (name, f"{name}-105", *(["guo2015-case1-cwpt"] if case == 1 else [])):
+            rows += case_rows(case, drive(run))
     rows += window_rows()
     rows += [row for name in ("guo2015-case5", "guo2015-case5-105") for row in fit_rows(name)]
     rows += [row for name in ("guo2015-case3", "guo2015-case3-105") for row in obeying_rows(name)]
     rows += [row for name in OTHER_PATHS for row in other_path_rows(drive(name))]
-    return Reproduction("guo2015", TITLE, rows, figures, NOTES)
+    return Reproduction("guo2015", TITLE, rows, NOTES)
 
 
 def other_path_rows(driven: Driven) -> list[Row]:

@@ -1,12 +1,10 @@
 """The HSIC paper: parked within its limits, small deviation from the common tangent, all 12 characteristic states."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 
 from controller_fmu.hsic.characteristic_states import Characteristic, HsicStage
-from orchestrator.studies.papers.motion_figure import draw_hsic
 from orchestrator.studies.papers.result import CONCLUSION, OWN, Drive, Driven, Reproduction, Row, not_tested, yes_row
 
 TITLE = "Human-simulated intelligent control of parallel parking"
@@ -37,8 +35,8 @@ NOTES = [
 ]
 
 
-def reproduce(out: Path, drive: Drive) -> Reproduction:
-    """Return printed and measured numbers; writes hsic.png to ``out``."""
+def reproduce(drive: Drive) -> Reproduction:
+    """Return printed and measured numbers."""
     runs = [drive(name) for name in SCENARIOS]
     rows = UNTESTED + [row for driven in runs for row in _rows(driven)]
     reached: dict[int, str] = {}
@@ -51,7 +49,7 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
             rows.append(Row("", f"state {int(state)} {state.name} first reached in", "", None, found))
     missing = [state.name for state in Characteristic if int(state) not in reached]
     rows.append(Row("", "all 12 states reached", "", "yes", ", ".join(missing) or "yes", 0.0, basis=OWN))
-    return Reproduction("hsic", TITLE, rows, [draw_hsic(runs[0], runs[-1], out / "hsic.png")], NOTES)
+    return Reproduction("hsic", TITLE, rows, NOTES)
 
 
 def _rows(driven: Driven) -> list[Row]:

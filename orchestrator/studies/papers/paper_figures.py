@@ -19,10 +19,12 @@ from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import DEFAULT_ROAD, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.road import road_at, road_length
+from fmus.native.compilers import can_compile
 from modelkit.vocabulary import Pose
 from orchestrator.presentation.drawing.picture_data import path_plans
 from orchestrator.presentation.drawing.run_figure import LINES, PATH, run_figure, style_context
-from orchestrator.studies.papers.apa_figure import DRIVING_STATES
+from orchestrator.studies.papers.apa import DRIVING_STATES
+from orchestrator.studies.papers.preview import sweep
 from orchestrator.studies.papers.result import Driven
 
 Draw = Callable[[list[Driven]], Figure]
@@ -340,6 +342,21 @@ def camera_errors(runs: list[Driven]) -> Figure:
     return over_distance(runs, panels, (0.0, 1e4))
 
 
+def set_speed_sweep(_: list[Driven]) -> Figure:
+    """Return Fig. 11: largest deviation of the drive, and largest heading error in curve 4, over the set speed."""
+    speeds, errors = sweep()
+    figure, (axis,) = grid_of(1, 1, 4.5, 2.6)
+    heading = axis.twinx()
+    printed = TARGET | {"label": "as printed"}
+    axis.plot(speeds, 100.0 * errors[:, 0], color="#000000", label="yL")
+    axis.axhline(2.0, **printed)
+    heading.plot(speeds, np.degrees(errors[:, 1]), color="#b0401a", linestyle="--", label="epsL in curve 4")
+    heading.axhline(5.0, **printed)
+    axis.set(xlabel="set speed [m/s]", ylabel="largest |yL| [cm]", ylim=(0.0, 4.0))
+    heading.set(ylabel="largest |epsL| in curve 4 [deg], dashed", ylim=(0.0, 16.0))
+    return figure
+
+
 def _guo(number: str, case: int, printed: tuple[tuple[float, float, float, float], ...] = ()) -> PaperFigure:
     names = (f"guo2015-case{case}", f"guo2015-case{case}-105")
     note = "Panels a to d as printed; dotted: the target at the car's x. Both steering rates."
@@ -431,8 +448,8 @@ FIGURES: tuple[PaperFigure, ...] = (
         "preview",
         "Fig. 11",
         "errors over the set speed",
-        None,
-        note="written by `apa reproduce preview` as preview-sweep.png, from a study of its own",
+        set_speed_sweep if can_compile() else None,
+        note="From the study `preview-speed`, which needs a C compiler; dotted: as printed.",
     ),
     PaperFigure(
         "preview",

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,6 @@ from controller_fmu.preview.params import DEFAULT_ROAD
 from controller_fmu.preview.stage import PreviewStage
 from fmus.native.compilers import can_compile
 from orchestrator.simulation.cosim.fmu_instance import Array
-from orchestrator.studies.papers.preview_figure import draw_preview, draw_surfaces, draw_sweep
 from orchestrator.studies.papers.result import (
     CONCLUSION,
     OWN,
@@ -59,7 +58,7 @@ UNTESTED = [
     not_tested("points C and E along the road", "the road is laid from them", "353.6 m, 510.7 m"),
     not_tested("(3): k_v, k_d, mu_max one by one", "the equation is lost; all they make is 0.578 m/s2"),
     not_tested("(1), Fig. 5: the body's equations and the membership functions", "lost; standard forms, triangles"),
-    not_tested("Fig. 6: rule surfaces", "no numbers are printed; preview-surfaces.png shows ours"),
+    not_tested("Fig. 6: rule surfaces", "no numbers are printed; preview-fig6.png shows ours"),
     not_tested("safe speed by its own formula", "a is fitted to the printed speeds"),
 ]
 RISEN, RIPPLE = 0.1, 0.08
@@ -82,17 +81,14 @@ NOTES = [
 ]
 
 
-def reproduce(out: Path, drive: Drive) -> Reproduction:
-    """Return printed and measured numbers; writes three pictures to ``out``."""
+def reproduce(drive: Drive) -> Reproduction:
+    """Return printed and measured numbers."""
     main, eight, single = drive("preview"), drive("preview-8"), drive("preview-single")
     rows = UNTESTED + friction_rows() + _speeds(main) + _errors(main) + _settling(main) + _points(eight)
     rows += _geometry(main, drive("preview-geometry")) + _camera(drive("preview-camera")) + _single(main, single)
-    figures = [*draw_preview(main, eight, single, out), draw_surfaces(out / "preview-surfaces.png")]
     if can_compile():
-        speeds, table = sweep()
-        rows += _sweep_rows(speeds, table)
-        figures.append(draw_sweep(speeds, table, out / "preview-sweep.png"))
-    return Reproduction("preview", TITLE, rows, figures, NOTES)
+        rows += _sweep_rows(*sweep())
+    return Reproduction("preview", TITLE, rows, NOTES)
 
 
 def friction_rows() -> list[Row]:
@@ -127,6 +123,7 @@ def curves() -> list[tuple[float, float, float]]:
     return found
 
 
+@cache
 def sweep() -> tuple[Array, Array]:
     """Return (speed, largest |yL| [m] and |epsL| [rad] (in curve 4)) for each set speed of Fig. 11."""
     found = columns_in_memory(read_study("preview-speed", {}))

@@ -1,8 +1,7 @@
-"""What a reproduction says: rows of printed and measured numbers, pictures, and plain notes."""
+"""What a reproduction says: rows of printed and measured numbers, and plain notes."""
 
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from orchestrator.evaluation.verdict.summary import Summary, summarize
@@ -120,7 +119,6 @@ class Reproduction(NamedTuple):
     paper: str
     title: str
     rows: list[Row]
-    figures: list[Path]
     notes: list[str]
 
     @property
@@ -144,10 +142,8 @@ class Reproduction(NamedTuple):
             "passed": self.passed,
             "tally": self.tally._asdict(),
             "rows": [row.as_json() for row in self.rows],
-            "figures": [str(figure) for figure in self.figures],
             "notes": self.notes,
         }
 
 
-Reproduce = Callable[[Path, Drive], Reproduction]
-"""Writes pictures to a folder and returns the result; drives scenarios through the second argument."""
+Reproduce = Callable[[Drive], Reproduction]

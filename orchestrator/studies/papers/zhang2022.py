@@ -1,13 +1,11 @@
 """Zhang 2022: path, heading, speed and front-wheel angle over time, and how far each is from its reference."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 
 from controller_fmu.zhang2022.phases import ZhangPhase
 from orchestrator.simulation.cosim.fmu_instance import Array
-from orchestrator.studies.papers.motion_figure import draw_zhang
 from orchestrator.studies.papers.result import CONCLUSION, OWN, Drive, Driven, Reproduction, Row, not_tested, yes_row
 
 TITLE = "Parallel parking simulation analysis based on CarSim (Zhang et al. 2022)"
@@ -29,8 +27,8 @@ UNTESTED = [
 ]
 
 
-def reproduce(out: Path, drive: Drive) -> Reproduction:
-    """Return measured numbers beside the limits; writes zhang2022.png to ``out``."""
+def reproduce(drive: Drive) -> Reproduction:
+    """Return measured numbers beside the limits."""
     runs = [drive("zhang2022"), drive("zhang2022-double-track"), drive("zhang2022-pid")]
     rows = UNTESTED + [row for driven in runs for row in _rows(driven)]
     refused = drive("zhang2022-refused")
@@ -40,7 +38,7 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
     rows.append(Row(name, "curvature limit of the path", "1/m", None, limit))
     right = refused.summary.reason == "no_path" and best > limit
     rows.append(yes_row(name, "refused, its best path being beyond the limit", right, OWN))
-    return Reproduction("zhang2022", TITLE, rows, [draw_zhang(runs[:2], out / "zhang2022.png")], NOTES)
+    return Reproduction("zhang2022", TITLE, rows, NOTES)
 
 
 def curvature_limit(driven: Driven) -> float:

@@ -50,7 +50,7 @@ NOT_RUN = {
 LONG_PAGES = (
     *("catalogue", "index", "learn-to-park", "parking", "parking-planning", "parking-results", "parking-use"),
     *("parking-benchmarks", "see-and-drive", "studies", "targets", "test-in-ci", "third-party-fmus"),
-    *("use-in-your-tool", "vehicle", "write-a-model"),
+    *("scenario", "use-in-your-tool", "vehicle", "write-a-model"),
 )
 """Pages whose commands drive, sweep and compile for minutes what tests of the command drive in small. On each change
 the words of their commands are checked, `make release` runs them."""

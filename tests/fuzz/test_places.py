@@ -38,6 +38,12 @@ COMMANDS = {
     "export rerun": ["export", "rerun", "LOG", "--out", "FILE.rrd"],
 }
 
+SAME_PATH = ("test", "test --coverage", "sweep", "export mf4", "export rerun", "export ssp", "falsify")
+"""Commands that write their path as another one does: ``test --junit``, ``sweep --figure``, ``export csv``."""
+EACH_CHANGE = [
+    pytest.param(name, marks=pytest.mark.release if name in SAME_PATH else ()) for name in COMMANDS if name != "recover"
+]
+
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -81,7 +87,7 @@ def one_line(command: list[str]) -> str:
     return "\n".join([*lines, answer.out])
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "recover"])
+@pytest.mark.parametrize("command", EACH_CHANGE)
 def test_a_file_where_a_folder_should_be(command: str, kept: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
     assert "file: is a file, expected a folder" in one_line(words(command, kept, tmp_path / "file"))
@@ -146,13 +152,7 @@ def test_a_disk_that_is_read_only(command: str, kept: Path, tmp_path: Path) -> N
         assert "read-only" in one_line(asked)
 
 
-SAME_PATH = ("test", "test --coverage", "sweep")
-"""Commands that write their path as another one does: ``test --junit``, ``sweep --figure``."""
-
-
-@pytest.mark.parametrize(
-    "command", [pytest.param(name, marks=pytest.mark.release if name in SAME_PATH else ()) for name in COMMANDS]
-)
+@pytest.mark.parametrize("command", [*EACH_CHANGE, "recover"])
 def test_an_odd_path(command: str, kept: Path, tmp_path: Path) -> None:
     folder = tmp_path / "a +b (c) 'd' #1 %20 & é"
     folder.mkdir()
@@ -176,10 +176,8 @@ def test_a_log_in_a_folder_whose_name_is_no_word(command: str, kept: Path, tmp_p
     assert (folder / "new").is_file() or (folder / "new" / "report.html").is_file()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "kind", ["none", *(pytest.param(kind, marks=pytest.mark.release) for kind in ("python", "native"))]
-)
+@pytest.mark.release
+@pytest.mark.parametrize("kind", ["none", "python", "native"])
 def test_without_home_in_odd_folders_and_a_narrow_terminal(kind: str, tmp_path: Path) -> None:
     odd = tmp_path / "t %23 + ; é"
     odd.mkdir()

@@ -65,9 +65,9 @@ def pair(seed: int, vehicle: CompiledVehicle) -> Pair:
     return Pair(true, drive_of(log, "log"), names, known)
 
 
-def random_drive(random: np.random.Generator, largest: float = 8.0) -> tuple[Array, Array]:
+def random_drive(random: np.random.Generator, largest: float = 8.0, longest: float = 40.0) -> tuple[Array, Array]:
     """Return requests of steering-wheel angle [rad] and speed [m/s] at every step: random levels, held for a time."""
-    count = int(random.uniform(20.0, 40.0) / STEP)
+    count = int(random.uniform(20.0, longest) / STEP)
     angle, speed = levels(random, count, largest, (1.0, 4.0)), levels(random, count, 1.5, (3.0, 8.0))
     angle[:50], speed[:50] = 0.0, 0.0
     return angle, speed

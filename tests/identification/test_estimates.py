@@ -58,7 +58,7 @@ def test_intervals_hold_for_random_cars_and_drives(vehicle: CompiledVehicle) -> 
 def gentle(vehicle: CompiledVehicle, car: dict[str, float] = CAR) -> MeasuredDrive:
     """Return measurements of a drive that turns the wheel little: tan is straight there."""
     random = np.random.default_rng(47)
-    log = simulated_log(car, random_drive(random, largest=2.0), random, vehicle)
+    log = simulated_log(car, random_drive(random, largest=2.0, longest=20.0), random, vehicle)
     return drive_of(measurements_only(log, car), "log")
 
 

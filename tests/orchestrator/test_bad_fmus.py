@@ -16,6 +16,8 @@ from orchestrator.presentation.log.read_log import read_log
 from orchestrator.simulation.cosim.fmu_files import ROOT
 from tests.orchestrator import bad_fmus, foreign_fmus
 
+EACH_CHANGE = ("step-print", "step-threads", "terminate-crash", "terminate-hang")
+"""Those of ``bad_fmus.HARMLESS`` that are tried on each change."""
 SCENARIO = """
 name: {name}
 extends: guo2015-case4
@@ -69,7 +71,9 @@ def test_a_gallery_of_bad_fmus(tmp_path: Path) -> None:
     assert not (tmp_path.parent / "evil.txt").exists()
 
 
-@pytest.mark.parametrize("name", bad_fmus.HARMLESS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release) for name in bad_fmus.HARMLESS]
+)
 def test_what_an_fmu_prints_or_does_at_its_end_harms_no_run(
     name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -38,7 +38,8 @@ def test_what_it_makes_runs_at_once_and_takes_its_parameters(made: str, capsys: 
     assert (summary["final"]["x"], summary["max_speed"]) != (before, before_speed)
 
 
-@pytest.mark.parametrize("made", ONE_ON_EACH_CHANGE, indirect=True)
+@pytest.mark.release
+@pytest.mark.parametrize("made", KINDS, indirect=True)
 def test_its_tests_pass_and_its_readme_is_true(made: str) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-n0", made]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -32,7 +32,7 @@ def ran(words: list[str], folder: Path, limits: dict[str, int]) -> subprocess.Co
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="limits are kept by Linux")
-@pytest.mark.parametrize("megabytes", [400, 1_100])
+@pytest.mark.parametrize("megabytes", [400, pytest.param(1_100, marks=pytest.mark.release)])
 def test_a_study_neither_hangs_nor_aborts_when_memory_is_scarce(megabytes: int, tmp_path: Path) -> None:
     """In the native libraries of scipy and Arrow it would do one or the other."""
     done = ran([*STUDY, "--out", str(tmp_path / "out")], tmp_path, {"RLIMIT_AS": megabytes * 1_000_000})
@@ -60,6 +60,7 @@ def test_an_export_to_a_disk_that_is_full_ends_in_one_line(command: str, tmp_pat
     assert sorted(out.iterdir()) == before
 
 
+@pytest.mark.release
 @pytest.mark.skipif(sys.platform != "linux", reason="no folder can be made below a device")
 def test_a_figure_needs_no_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """matplotlib says in two lines that its folder cannot be made."""

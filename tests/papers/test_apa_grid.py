@@ -18,8 +18,9 @@ from orchestrator.studies.sweep.job import Chunk, chunk_scenario, make_job
 from orchestrator.studies.sweep.rows import row_of
 
 needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
-EVERY = 5
+EVERY = 25
 """Each so many-th run: every car, kind, side, slot, distance, heading, body and speed are among them."""
+EVERY_OF_RELEASE = 5
 MILD = (62, 93, 186, 310, 658)
 """Runs without a miss of any kind."""
 PLAIN = (62, 658)
@@ -30,10 +31,10 @@ def driven(numbers: tuple[int, ...]) -> list[GridRun]:
     return parkings(columns_in_memory(study_of([cases()[number] for number in numbers])))
 
 
-@pytest.fixture(scope="module")
-def results() -> list[GridRun]:
+@pytest.fixture(scope="module", params=[EVERY, pytest.param(EVERY_OF_RELEASE, marks=pytest.mark.release)])
+def results(request: pytest.FixtureRequest) -> list[GridRun]:
     whole = study()
-    return parkings(columns_in_memory(whole._replace(design=whole.design.part(0, EVERY))))
+    return parkings(columns_in_memory(whole._replace(design=whole.design.part(0, request.param))))
 
 
 def test_the_grid_covers_what_it_says() -> None:
@@ -72,7 +73,7 @@ def test_every_run_ends_parked_or_failed_with_its_reason(results: list[GridRun])
 
 @needs_compiler
 def test_all_but_two_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
-    assert sum(item.is_gbt for item in results) >= 0.98 * len(results)
+    assert sum(not item.is_gbt for item in results) <= max(1, 0.02 * len(results))
 
 
 @needs_compiler

@@ -48,10 +48,10 @@ def test_all_have_the_same_slots() -> None:
 
 
 def smallest_peak(start: Pose, radius: float) -> float:
-    """Return the least peak of the quintics [1/m] over 2001 radii."""
+    """Return the least peak of the quintics [1/m] over 501 radii."""
     widest = largest_radius(start.x, start.y)
     low = min(radius, widest)
-    arcs = [arc_line_arc(start.x, start.y, low + (widest - low) * n / 2000) for n in range(2001)]
+    arcs = [arc_line_arc(start.x, start.y, low + (widest - low) * n / 500) for n in range(501)]
     return min(
         through(start, arc).largest_curvature for arc in arcs if arc.line >= 0.0 and 0.0 < arc.angle < MAX_PATH_HEADING
     )

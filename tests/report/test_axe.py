@@ -27,7 +27,9 @@ LOOKS = {
     "dark": {"color_scheme": "dark"},
     "forced": {"color_scheme": "dark", "forced_colors": "active"},
 }
-LOOKED_AT = pytest.mark.parametrize("look", ["light", "dark", pytest.param("forced", marks=pytest.mark.release)])
+LOOKED_AT = pytest.mark.parametrize(
+    "look", ["light", *(pytest.param(look, marks=pytest.mark.release) for look in ("dark", "forced"))]
+)
 STUDY = """
 name: trial
 title: Two systems, three speeds

@@ -88,6 +88,7 @@ def test_a_scheduler_that_does_not_answer(
     assert "no scheduler answers" in capsys.readouterr().err
 
 
+@pytest.mark.release
 def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() -> None:
     distributed = pytest.importorskip("distributed")
     pytest.importorskip("cryptography")

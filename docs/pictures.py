@@ -5,6 +5,7 @@ Needs Chromium (or Chrome) and the package playwright; the pictures are kept in 
 
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -47,21 +48,8 @@ def live_pictures(browser: Any, path: Path, wide: dict[str, Any]) -> None:
             "() => { const { drive } = window.live; while (drive.state('controller.phase') !== 'TO_Q2') drive.go(); }"
         )
 
-    photograph_live(browser, path, "live", wide, slower)
-    photograph_live(browser, path, "live-chart", wide, charted)
-
-
-def photograph_live(browser: Any, path: Path, name: str, options: dict[str, Any], act: Any) -> None:
-    """Write docs/images/``name``.png of the live page after ``act``."""
-    context = browser.new_context(**options)
-    page = context.new_page()
-    page.goto(path.as_uri() + "#s=guo2015-case4-105")
-    page.wait_for_selector("html[data-ready]")
-    act(page)
-    page.wait_for_timeout(1000)
-    page.screenshot(path=IMAGES / f"{name}.png")
-    context.close()
-    print(f"docs/images/{name}.png")
+    photograph(browser, path, "live", "#s=guo2015-case4-105", wide, slower)
+    photograph(browser, path, "live-chart", "#s=guo2015-case4-105", wide, charted)
 
 
 def make_runs(folder: Path) -> dict[str, Path]:
@@ -84,14 +72,23 @@ def make_runs(folder: Path) -> dict[str, Path]:
     }
 
 
-def photograph(browser: Any, path: Path, name: str, fragment: str, options: dict[str, Any]) -> None:
-    """Write docs/images/``name``.png of a page at a moment."""
+def photograph(
+    browser: Any,
+    path: Path,
+    name: str,
+    fragment: str,
+    options: dict[str, Any],
+    act: Callable[[Any], None] | None = None,
+) -> None:
+    """Write docs/images/``name``.png of a page at a moment, or after ``act``."""
     context = browser.new_context(**options)
     page = context.new_page()
     page.goto(path.as_uri() + fragment)
     if fragment:
         page.wait_for_selector("html[data-ready]")
-        page.wait_for_timeout(300)
+        if act is not None:
+            act(page)
+        page.wait_for_timeout(300 if act is None else 1000)
     page.screenshot(path=IMAGES / f"{name}.png")
     context.close()
     print(f"docs/images/{name}.png")

@@ -15,7 +15,7 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
     for panel in PANELS:
         title, unit, least = panel.title, panel.unit, panel.least_span
         signals = [name for name in panel.page_signals() if any(_alive(item, name) for item in recordings)]
-        if not any(_changes(item, name) for item in recordings for name in signals):
+        if not any(changes(item, name) for item in recordings for name in signals):
             continue
         if _far_apart(recordings, signals):
             plots += [plot_of(f"{title}: {words_of(name)}", unit, least, [name], checks) for name in signals]
@@ -67,7 +67,8 @@ def words_of(name: str) -> str:
     return _short(name).replace(".", " ").replace("_", " ")
 
 
-def _changes(recording: Recording, name: str) -> bool:
+def changes(recording: Recording, name: str) -> bool:
+    """Return whether a signal is there and has more than one value."""
     values = recording.signals.get(name)
     return values is not None and bool(np.any(values != values[:1]))
 

@@ -11,6 +11,7 @@ from orchestrator.presentation.drawing.panels import MODES, REFERENCES
 from orchestrator.presentation.log.line import Line
 from orchestrator.presentation.report.payload import Arrays
 from orchestrator.presentation.report.plans import MOST_PLANS, plans_of
+from orchestrator.presentation.report.plots import changes
 from orchestrator.presentation.report.still import Point, origin_of, still_of
 from orchestrator.presentation.report.thinning import thin
 from orchestrator.simulation.cosim.recording import Recording
@@ -68,14 +69,9 @@ def ribbons_of(recordings: list[Recording], most: int = MOST_RIBBONS) -> list[st
     chosen: dict[str, str] = {}
     for name in [*(name for name in MODES if name in names), *names]:
         short = name.partition(".")[2]
-        if short not in chosen and (name == CHART or any(_changes(item, name) for item in recordings)):
+        if short not in chosen and (name == CHART or any(changes(item, name) for item in recordings)):
             chosen[short] = name
     return list(chosen.values())[:most]
-
-
-def _changes(recording: Recording, name: str) -> bool:
-    values = recording.signals.get(name)
-    return values is not None and bool((values != values[:1]).any())
 
 
 def _is_held(variable: Variable) -> bool:

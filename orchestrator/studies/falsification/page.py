@@ -2,7 +2,6 @@
 
 import html
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from orchestrator.studies.falsification.counterexamples import Counterexample, f
 from orchestrator.studies.falsification.falsify import FalsificationResult
 from orchestrator.studies.falsification.sensitivity import Index
 from orchestrator.studies.falsification.subject import Subject
-from orchestrator.studies.sweep.page.page import study_style
+from orchestrator.studies.sweep.page.page import html_table, study_style
 from orchestrator.studies.sweep.study.space import Factor
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
@@ -136,7 +135,7 @@ def _counterexamples(subject: Subject, result: FalsificationResult) -> str:
     text = "Each with the fewest and smallest disturbances (in brackets: nominal). Run one: "
     text += "<code>apa run counterexamples/NAME.yaml</code>; the same bits as when it was found."
     heads = ("scenario", "what happens", "what it needs", "of other seeds")
-    return CARD.format(title="Finds", text=text if rows else "None.", inner=_table(heads, rows) if rows else "")
+    return CARD.format(title="Finds", text=text if rows else "None.", inner=html_table(heads, rows) if rows else "")
 
 
 def _bounds(result: FalsificationResult) -> str:
@@ -158,7 +157,7 @@ def _influences(result: FalsificationResult) -> str:
         "Sobol indices of the margin with 95 % intervals: the share of its variance that goes with a factor alone "
         "(first), and with all that it has a part in (total)."
     )
-    return CARD.format(title="Sensitivity", text=text, inner=_table(("factor", "first", "total"), rows))
+    return CARD.format(title="Sensitivity", text=text, inner=html_table(("factor", "first", "total"), rows))
 
 
 def _index(index: Index | None) -> str:
@@ -176,14 +175,8 @@ def _ranges(subject: Subject) -> str:
         )
         for item in subject.space.factors
     ]
-    return CARD.format(title="Ranges", text="", inner=_table(("factor", "range", "nominal", ""), rows))
+    return CARD.format(title="Ranges", text="", inner=html_table(("factor", "range", "nominal", ""), rows))
 
 
 def _unit(factor: Factor) -> str:
     return "" if factor.unit in ("", "1") else f" {escape(factor.unit)}"
-
-
-def _table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:
-    head = "".join(f"<th>{item}</th>" for item in heads)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'

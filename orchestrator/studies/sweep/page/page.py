@@ -150,7 +150,7 @@ def _reasons(table: Table) -> str:
         )
         for item in outcome_counts(table)
     ]
-    return _card("Outcomes", "", _table(("outcome", "reason", "runs", "share", "95 % interval", ""), rows))
+    return _card("Outcomes", "", html_table(("outcome", "reason", "runs", "share", "95 % interval", ""), rows))
 
 
 def _histograms(table: Table) -> str:
@@ -191,7 +191,7 @@ def _influences(table: Table) -> str:
         "Share of the variance of a result that goes with one parameter alone (first order; what is missing to 100 % "
         "is joint effects and chance), and Spearman's rank correlation."
     )
-    return _card("Sensitivity: first-order index, rank correlation", text, _table(heads, rows))
+    return _card("Sensitivity: first-order index, rank correlation", text, html_table(heads, rows))
 
 
 def _worst(table: Table) -> str:
@@ -216,7 +216,7 @@ def _worst(table: Table) -> str:
         )
     heads = ("row", "outcome", "deciding limit", "lateral", "heading", "time", "replay", *(escape(key) for key in keys))
     text = "The command repeats a row to the same bits, with log and replay."
-    return _card("Largest violations", text, _table(heads, rows))
+    return _card("Largest violations", text, html_table(heads, rows))
 
 
 def _finite(form: str, value: float) -> str:
@@ -239,7 +239,7 @@ def _about(table: Table) -> str:
     return (
         '<section class="card"><details><summary>Study and versions</summary>'
         f'<pre class="scroll" tabindex="0">{escape(text)}</pre>'
-        f"{_table(('what', 'version'), rows)}</details></section>"
+        f"{html_table(('what', 'version'), rows)}</details></section>"
     )
 
 
@@ -252,7 +252,8 @@ def _meter(share: float, kind: str = "") -> str:
     return f'<div class="meter {kind}"><i style="width:{100.0 * share:.2f}%"></i></div>'
 
 
-def _table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:
+def html_table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:
+    """Return a table whose cells are HTML; cells that begin like a number are aligned to the right."""
     number: Callable[[str], str] = lambda text: ' class="number"' if text[:1] in "+-0123456789" else ""  # noqa: E731
     body = "".join("<tr>" + "".join(f"<td{number(cell)}>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     head = "".join(f"<th>{text}</th>" for text in heads)

@@ -57,7 +57,7 @@ def test_a_row_of_the_study_is_the_run_itself(monkeypatch: pytest.MonkeyPatch) -
         assert columns["duration"][place] == summary.duration
         assert columns["final.x"][place] == summary.final.x
         assert columns["min_clearance"][place] == np.min(ran.recording.signals["vehicle.clearance"])
-        assert columns["plans"][place] == 1.0
+        assert columns["plans"][place] == ran.recording.signals["controller.apa.plans"][-1]
 
 
 def test_out_of_a_slot_the_car_hands_over_along_the_street() -> None:

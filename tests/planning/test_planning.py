@@ -17,7 +17,7 @@ from controller_fmu.parking.planning.planner import PlanningStatus, path_of_plan
 from controller_fmu.parking.planning.problem import SearchGrid, SearchProblem, SearchRegion
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, least_word_cost, list_words, turn_of
 from controller_fmu.parking.planning.search_schedule import SEARCH_SCHEDULE
-from controller_fmu.parking.planning.work import MAX_WORDS, PlanCount, PlanningWork, word_length
+from controller_fmu.parking.planning.work import MAX_WORDS, WORD_SEGMENTS, PlanCount, PlanningWork, word_length
 from modelkit.store import new_store, size_of
 from modelkit.vocabulary import Pose
 from tests.planning.scenes import (
@@ -60,15 +60,15 @@ def test_every_word_ends_where_it_should() -> None:
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
         count = list_words(store, ORIGIN, end, WordRequest(0.0, 0.0, UNREACHABLE_COST), problem)
-        assert 32 <= count <= MAX_WORDS
+        assert 24 <= count <= MAX_WORDS
         for word in range(count):
             pose = ORIGIN
-            for piece in range(5):
+            for piece in range(WORD_SEGMENTS):
                 turn = turn_of(store.word_code[word], piece) - 1
                 pose = pose_along_arc(pose, word_length(store, word, piece), turn * CAR.max_curvature)
             assert math.hypot(pose.x - end.x, pose.y - end.y) < 1e-4
             assert abs(math.remainder(pose.heading - end.heading, 2.0 * math.pi)) < 1e-5
-        least = sum(abs(word_length(store, cheapest_word(store, count), piece)) for piece in range(5))
+        least = sum(abs(word_length(store, cheapest_word(store, count), piece)) for piece in range(WORD_SEGMENTS))
         assert least >= math.hypot(end.x, end.y) - 1e-9
 
 
@@ -94,7 +94,11 @@ def _words(store: PlanningWork, end: Pose, request: WordRequest, problem: Search
     """Return cost, turns and lengths of the words from the origin to ``end``."""
     count = list_words(store, ORIGIN, end, request, problem)
     return [
-        (store.word_cost[word], store.word_code[word], *(word_length(store, word, piece) for piece in range(5)))
+        (
+            store.word_cost[word],
+            store.word_code[word],
+            *(word_length(store, word, piece) for piece in range(WORD_SEGMENTS)),
+        )
         for word in range(count)
     ]
 

@@ -18,8 +18,8 @@ HASH_SIZE = 32768
 """Of the hash table, a power of two."""
 BUCKET_COUNT = 2048
 CROWDING_CELLS = 8192
-MAX_WORDS = 128
-WORD_SEGMENTS = 5
+MAX_WORDS = 64
+WORD_SEGMENTS = 3
 WORK_SEGMENTS = 256
 REQUEST_SIZE = 12
 MAX_CUSPS = REQUEST_SIZE - 1
@@ -116,7 +116,7 @@ class PlanValue(IntEnum):
 
     BEST_COST = 0
     BEST_LENGTHS = 1
-    """And four more: the lengths of the word that leads from the best node to the target."""
+    """And two more: the lengths of the word that leads from the best node to the target."""
     FREE_AT_TARGET = 6
     """And five more: how far the car can drive from the target, by gear and turn."""
     FREE_AT_NODE = 12
@@ -130,7 +130,7 @@ class PlanValue(IntEnum):
 
 
 def word_length(work: PlanningWork, word: int, segment: int) -> float:
-    """Return the length [m] of a word's segment (0 to 4), reverse negative; 0: there is none."""
+    """Return the length [m] of a word's segment (0 to 2), reverse negative; 0: there is none."""
     return work.word_distance[WORD_SEGMENTS * word + segment]
 
 

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame
-from controller_fmu.parking.geometry.outline import VehicleOutline, extent_within, outline_frame
+from controller_fmu.parking.geometry.outline import VehicleOutline, outline_frame
 from controller_fmu.parking.geometry.polygons import (
     LOCAL_VERTICES,
     ObstacleMap,
@@ -52,7 +52,7 @@ START_CLEARANCE = 0.05
 
 
 class Quad(NamedTuple):
-    """A rectangle along a row, from (x0, y0) to (x1, y1) in the row's frame [m], y away from the road."""
+    """A rectangle along a row, from (x0, y0) to (x1, y1) in its frame [m], y away from the road; x0 = x1: none."""
 
     x0: float = 0.0
     y0: float = 0.0
@@ -71,12 +71,12 @@ def obstacle_map(
     road: Point,
     mapping: MappingParams,
 ) -> ObstacleMap:
-    """Return the polygons around a slot; they keep ``START_CLEARANCE`` from the outline of the vehicle.
+    """Return the polygons around a slot that keep ``START_CLEARANCE`` from the outline of the vehicle.
 
     The road is free up to x ahead, and y to its other side, in the row's frame.
     """
     quads = _slot_quads(slot, outline, road)
-    quads = tuple(_beside_vehicle(quad, slot, outline, vehicle) for quad in quads)
+    quads = tuple(Quad() if _touches(quad, slot, outline, vehicle) else quad for quad in quads)
     return ObstacleMap(
         tuple(_landmark_vertex(landmarks[number // 2], number, mapping) for number in range(LANDMARK_VERTICES))
         + tuple(_quad_vertex(quads[number // 4], number, slot) for number in range(QUAD_VERTICES))
@@ -109,27 +109,15 @@ def is_on_map(landmark: Landmark, known: tuple[Vertex, ...], tolerance: float) -
     return True
 
 
-def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> Quad:
-    """Return a rectangle without what the vehicle stands in: cut on the side on which the least is lost."""
-    if quad.slope != 0.0:
-        return quad
-    low = Point(min(quad.x0, quad.x1) - START_CLEARANCE, min(quad.y0, quad.y1) - START_CLEARANCE)
-    high = Point(max(quad.x0, quad.x1) + START_CLEARANCE, max(quad.y0, quad.y1) + START_CLEARANCE)
-    within = extent_within(vehicle, outline, slot.row.frame, slot.row.side, low, high)
-    if within.low_x > within.high_x:
-        return quad
-    from_low_x = within.high_x - low.x
-    from_high_x = high.x - within.low_x
-    from_low_y = within.high_y - low.y
-    from_high_y = high.y - within.low_y
-    least = min(min(from_low_x, from_high_x), min(from_low_y, from_high_y))
-    if least == from_low_x and from_low_x < quad.x1 - quad.x0:
-        return quad._replace(x0=quad.x0 + from_low_x)
-    if least == from_high_x and from_high_x < quad.x1 - quad.x0:
-        return quad._replace(x1=quad.x1 - from_high_x)
-    if least == from_low_y:
-        return quad._replace(y0=quad.y0 + from_low_y)
-    return quad._replace(y1=quad.y1 - from_high_y)
+def _touches(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> bool:
+    """Return whether an edge of a rectangle about the slot is nearer to the vehicle than ``START_CLEARANCE``."""
+    frame = outline_frame(vehicle)
+    for number in range(4):
+        a = _quad_vertex(quad, number, slot)
+        b = _quad_vertex(quad, (number + 1) % 4, slot)
+        if line_distance(Point(a.x, a.y), Point(b.x, b.y), frame, outline) < START_CLEARANCE:
+            return True
+    return False
 
 
 def away_from_vehicle(landmark: Landmark, outline: VehicleOutline, vehicle: Pose) -> Landmark:
@@ -167,7 +155,7 @@ def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) ->
 
 def _quad_vertex(quad: Quad, number: int, slot: SlotCandidate) -> Vertex:
     """Return a vertex of a rectangle about the slot, by its ``number`` among those of all of them."""
-    if slot.type == SlotType.NONE:
+    if slot.type == SlotType.NONE or quad.x0 >= quad.x1:
         return Vertex()
     corner = number % 4
     x = quad.x0 if corner == 0 or corner == 3 else quad.x1

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from controller_fmu.parking.geometry.outline import extent_within, vehicle_outline
 from controller_fmu.parking.map.chain_update import (
     ChainUpdate,
     as_point,
@@ -41,7 +40,7 @@ from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.segment_fit import EndGuess, SegmentGuess, fit_segment
 from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose
-from modelkit.geometry import Box, Point
+from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
 
@@ -251,17 +250,6 @@ def test_a_sensor_that_looks_aside_measures_the_same_wall() -> None:
     outer = SensorPose(-0.1, -0.25, math.cos(0.4), -math.sin(0.4))
     wall = facing_segment(inner, 0.8, outer, 0.9, 1e-4)
     assert [start_point(wall).x, end_point(wall).x] == pytest.approx([0.8, 0.8])
-
-
-def test_the_extent_of_the_outline_within_a_box_is_exact() -> None:
-    outline = vehicle_outline(CAR, 1.0)
-    inside = extent_within(Pose(), outline, Pose(), 1.0, Point(-9.0, 0.5), Point(9.0, 9.0))
-    assert (inside.low_y, inside.high_y) == pytest.approx((0.5, outline.half_width))
-    assert inside.high_x == pytest.approx(outline.centre_ahead + outline.half_length)
-    band = extent_within(Pose(), outline, Pose(), 1.0, Point(1.01, -9.0), Point(1.02, 9.0))
-    assert (band.low_x, band.high_x) == pytest.approx((1.01, 1.02))
-    assert (band.low_y, band.high_y) == pytest.approx((-outline.half_width, outline.half_width))
-    assert extent_within(Pose(), outline, Pose(), 1.0, Point(9.0, 9.0), Point(10.0, 10.0)).low_x > 1e8
 
 
 @pytest.mark.parametrize(("measured", "is_edge"), [(3.0, True), (4.8, False)])

@@ -13,7 +13,7 @@ from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, MAP_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.obstacle_map import is_on_map
+from controller_fmu.parking.obstacle_map import is_on_map, obstacle_map
 from controller_fmu.parking.perception import number_of_choice, with_offer
 from controller_fmu.parking.planning.planner import store_request
 from controller_fmu.parking.planning.problem import PlanningRequest
@@ -24,6 +24,7 @@ from controller_fmu.parking.slots.goal import goal_pose, least_depth, most_overh
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow
 from modelkit.car import Car
+from modelkit.geometry import Point
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 
@@ -188,3 +189,20 @@ def test_in_a_slot_hardly_deeper_than_the_vehicle_it_keeps_the_same_room_behind_
     assert least_depth(slot, OUTLINE, SLOT) == pytest.approx(
         length + SLOT.least_behind - most_overhang(slot, OUTLINE, SLOT)
     )
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_what_the_vehicle_stands_in_was_wrongly_taken_for_occupied(side: float) -> None:
+    """A rectangle about a slot that the vehicle cuts is left out; all stay that it only stands beside."""
+    slot = judged(square(SlotKind.TAIL_IN, 2.6, 5.0, side))
+
+    def numbers(x: float, y: float) -> set[int]:
+        pose = Pose(x, y, -side * 0.5 * math.pi)
+        polygons = obstacle_map(NOWHERE, slot, OUTLINE, pose, Point(20.0, -9.0), MAPPING)
+        return {vertex.polygon for vertex in polygons.vertices} - {0}
+
+    rear = side * OUTLINE.half_length
+    inside = numbers(1.3, side * OUTLINE.centre_ahead + rear)
+    assert len(inside) == 7
+    assert inside - numbers(0.8, side * OUTLINE.centre_ahead + rear) == {MAX_LANDMARKS + 1}, "the neighbour behind"
+    assert inside - numbers(1.8, side * OUTLINE.centre_ahead + rear) == {MAX_LANDMARKS + 2}, "the one ahead"

@@ -3,10 +3,7 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
-from controller_fmu.parking.geometry.polygons import clip_to_box
 from modelkit.car import Car, car_length, largest_curvature
-from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 STRAIGHT_TURN = 1e-9
@@ -62,39 +59,3 @@ class OutlineFrame(NamedTuple):
 def outline_frame(pose: Pose) -> OutlineFrame:
     """Return ``pose`` with the cosine and sine of its heading."""
     return OutlineFrame(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
-
-
-class Extent(NamedTuple):
-    """Least and largest coordinate of some points [m]; low > high: there are none."""
-
-    low_x: float = 1e9
-    high_x: float = -1e9
-    low_y: float = 1e9
-    high_y: float = -1e9
-
-
-def extent_within(pose: Pose, outline: VehicleOutline, frame: Pose, side: float, low: Point, high: Point) -> Extent:
-    """Return the extent of the boundary of a vehicle at ``pose`` as far as it lies within the box ``low`` to ``high``.
-
-    The box and the result [m] are in ``frame``, its y axis multiplied by ``side`` (1, -1).
-    """
-    found = Extent()
-    for edge in range(4):
-        start = _corner(pose, outline, frame, side, edge)
-        end = _corner(pose, outline, frame, side, edge + 1)
-        part = clip_to_box(start, end, low, high)
-        for share in (part.enter, part.leave):
-            if part.enter <= part.leave:
-                x = start.x + share * (end.x - start.x)
-                y = start.y + share * (end.y - start.y)
-                found = Extent(min(found.low_x, x), max(found.high_x, x), min(found.low_y, y), max(found.high_y, y))
-    return found
-
-
-def _corner(pose: Pose, outline: VehicleOutline, frame: Pose, side: float, number: int) -> Point:
-    """Return a corner of a vehicle at ``pose`` in ``frame``: 0 to 3 around it, then the first again."""
-    along = outline.half_length if number % 4 < 2 else -outline.half_length
-    left = outline.half_width if 0 < number < 3 else -outline.half_width
-    at = point_from_frame(outline.centre_ahead + along, left, pose)
-    point = point_to_frame(at.x, at.y, frame)
-    return Point(point.x, side * point.y)

@@ -108,7 +108,7 @@ def find_angled_row(
 ) -> SlotRow:
     """Return the angled row on one side (1 left, -1 right) of a vehicle that drives along it; empty: there is none."""
     corners = _corners(landmarks, vehicle, side, params)
-    line = _line_of(corners, side)
+    line = _line_of(corners)
     sides = _side_heading(corners, line)
     road = side * math.atan(line.slope)
     if abs(_square_angle(sides - road)) < MAX_TILT:
@@ -217,9 +217,7 @@ def _row_of(
 ) -> AngledRow:
     """Return a row whose slots lead forward (``lean`` 1) or backward (-1), from ahead to behind."""
     total = 0.0
-    bay = NO_MEMBER
     before = NO_MEMBER
-    last_car = NO_MEMBER
     first = _next_corner(corners, line, NO_MEMBER)
     for _ in range(MAX_MEMBERS):
         if first > -NO_MEMBER:
@@ -235,23 +233,20 @@ def _row_of(
                 total += _side_log_likelihood(sides.flank, CAR_LENGTH, CAR_LENGTH_SIGMA)
                 total += _side_log_likelihood(sides.front, CAR_WIDTH, CAR_WIDTH_SIGMA)
                 total -= min(free, MAX_FREE_BODY)
-                edge = car.end if lean > 0.0 else car.start
-                bay = min(bay, last_car - edge)
-                last_car = edge
             elif is_post or is_narrow:
                 car = _as_post(car, lean)
-            total += -LOG_TEN if is_post else _bay_log_likelihood(min(pitch, BAY_WIDTH))
+            total += -LOG_TEN if is_post else _pitch_log_likelihood(pitch)
             before = first
             first = behind
             row = with_member(row, row.used, car)._replace(used=row.used + 1)
     line = _line_through(row, line, lean)
     row = row._replace(slope=row.side * line.slope, front_at=line.at)
-    return AngledRow(row, total + (_bay_log_likelihood(max(bay, BAY_WIDTH)) if bay < 0.5 * NO_MEMBER else 0.0))
+    return AngledRow(row, total)
 
 
-def _bay_log_likelihood(bay: float) -> float:
-    """Return the log-likelihood of a distance [m] of two cars in a row: of ten, one is a post, or an empty bay."""
-    return max(length_log_likelihood(bay, True, BAY_WIDTH, BAY_SIGMA), -LOG_TEN)
+def _pitch_log_likelihood(pitch: float) -> float:
+    """Return the log-likelihood of a distance [m] of two corners, if less than a bay's: of ten, one is of a post."""
+    return max(length_log_likelihood(min(pitch, BAY_WIDTH), True, BAY_WIDTH, BAY_SIGMA), -LOG_TEN)
 
 
 def _line_through(row: SlotRow, line: RoadLine, lean: float) -> RoadLine:
@@ -278,7 +273,7 @@ def _next_corner(corners: tuple[RoadCorner, ...], line: RoadLine, last: float) -
     return first
 
 
-def _line_of(corners: tuple[RoadCorner, ...], side: float) -> RoadLine:
+def _line_of(corners: tuple[RoadCorner, ...]) -> RoadLine:
     """Return the line through two corners that most others are on, and few before; of a single car along the path."""
     best = RoadLine(0.0, NO_MEMBER)
     for number in range(MAX_CORNERS):
@@ -295,21 +290,17 @@ def _line_of(corners: tuple[RoadCorner, ...], side: float) -> RoadLine:
                 if abs(math.atan(slope)) < MAX_TILT:
                     score = 0.0
                     for number in range(MAX_CORNERS):
-                        score += _line_score(corners[number], line, side)
+                        score += _line_score(corners[number], line)
                     if score > most:
                         most = score
                         best = line
     return best
 
 
-def _line_score(corner: RoadCorner, line: RoadLine, side: float) -> float:
-    """Return how much a corner speaks for a line, and the other end of its side too; one before the line against it."""
+def _line_score(corner: RoadCorner, line: RoadLine) -> float:
+    """Return how much a corner speaks for a line, or against one that it stands before."""
     off = _off_line(corner, line)
-    if off < -LINE_DEPTH:
-        return -corner.weight
-    near = 1.0 - abs(off) / LINE_DEPTH
-    far = near - corner.length * abs(math.sin(corner.heading - side * math.atan(line.slope))) / LINE_DEPTH
-    return corner.weight * (max(near, 0.0) + max(far, 0.0))
+    return -corner.weight if off < -LINE_DEPTH else corner.weight * max(1.0 - abs(off) / LINE_DEPTH, 0.0)
 
 
 def _off_line(corner: RoadCorner, line: RoadLine) -> float:

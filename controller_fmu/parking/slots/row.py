@@ -222,18 +222,15 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     share its misalignment. Half of the deviation is the slot's own: the vehicle stands between cars that make it.
     """
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
-    deepest = _nearest_front(row) + ROW_DEPTH
     total = 0.0
     turn = 0.0
-    has_cars = False
     sides = tuple(side_as_member(landmarks[number], row.frame, row.side, params) for number in range(MAX_LANDMARKS))
     for number in range(MAX_LANDMARKS):
         if sides[number].end > sides[number].start:
             weight = _side_weight(landmarks, sides, number)
             total += weight
             turn += weight * wrap_angle(landmarks[number].heading - along)
-            has_cars = has_cars or sides[number].front < deepest
-    if not has_cars:
+    if total <= 0.0:
         return RowDirection(0.0, MAX_TILT)
     line = _line_direction(row)
     difference = line.turn - turn / total
@@ -242,15 +239,6 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
         turn += weight * line.turn
         total += weight
     return RowDirection(turn / total, 0.5 / math.sqrt(total))
-
-
-def _nearest_front(row: SlotRow) -> float:
-    """Return the front [m] of a row's member nearest to the road."""
-    nearest = NO_MEMBER
-    for number in range(MAX_MEMBERS):
-        if number < row.used:
-            nearest = min(nearest, row.members[number].front)
-    return nearest
 
 
 def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], at: int) -> float:

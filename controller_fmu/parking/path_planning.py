@@ -49,7 +49,7 @@ from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, kerb_shift, least_depth, most_overhang, overhang_of
 from controller_fmu.parking.slots.slot_filter import slot_of_filter
-from controller_fmu.parking.state import ParkingMemory, SearchProgress
+from controller_fmu.parking.state import ParkingMemory, SearchProgress, with_landmarks
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -271,12 +271,6 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         reason = Reason.BLOCKED if stands_in_it else Reason.SLOT_TOO_SHALLOW
         memory = without_path(memory, reason, inputs, params)
     return memory
-
-
-def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> ParkingMemory:
-    """Return the memory with other landmarks in its map."""
-    perception = memory.perception
-    return memory._replace(perception=perception._replace(local_map=perception.local_map._replace(landmarks=landmarks)))
 
 
 def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:

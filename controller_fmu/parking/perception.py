@@ -10,7 +10,7 @@ from controller_fmu.parking.geometry.frames import planar_distance, point_to_fra
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import LandmarkType
 from controller_fmu.parking.map.local_map import range_by_map, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
@@ -50,7 +50,7 @@ from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.slots.slot_filter import SlotFilter, count_absent, is_slot_corner, predict_slot, update_slot
-from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
+from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress, with_landmarks
 from modelkit.car import car_length
 from modelkit.vocabulary import Pose
 
@@ -84,8 +84,9 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
         slot_filter = _update_slot_filter(memory, inputs, params)
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(search=with_slot_type(memory.search, params))
+        memory = memory._replace(perception=memory.perception._replace(tracks=tracks))
         memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
-        return memory._replace(perception=_with_tracks(memory.perception, memory.search, tracks, inputs, params))
+        return _with_obstacles(memory, inputs, params)
     return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
 
 
@@ -136,20 +137,15 @@ def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgr
     return search._replace(slot=slot._replace(type=SlotType.PARALLEL, is_nose_in=False))
 
 
-def _with_tracks(
-    perception: Perception,
-    search: SearchProgress,
-    tracks: tuple[ObjectTrack, ...],
-    inputs: ParkingSystemInput,
-    params: ParkingParams,
-) -> Perception:
-    """Return perception with new tracks, the echoes that the monitor respects, and surfaces before the bumpers."""
-    echoes = tuple(echo_obstacle(tracks[number], number, inputs, params) for number in range(MAX_SENSORS))
-    landmarks = _with_facing(perception.local_map.landmarks, search, tracks, inputs, params)
-    yields = yield_cycles(params) if any(is_yielded_to(track) for track in tracks) else perception.yields
-    return perception._replace(
-        local_map=perception.local_map._replace(landmarks=landmarks), tracks=tracks, echoes=echoes, yields=yields
+def _with_obstacles(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with the echoes that the monitor respects, and surfaces before the bumpers, by the tracks."""
+    echoes = tuple(
+        echo_obstacle(memory.perception.tracks[number], number, inputs, params) for number in range(MAX_SENSORS)
     )
+    if any(is_yielded_to(track) for track in memory.perception.tracks):
+        memory = memory._replace(perception=memory.perception._replace(yields=yield_cycles(params)))
+    memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
+    return _with_facing(memory, inputs, params)
 
 
 def yield_cycles(params: ParkingParams) -> int:
@@ -162,32 +158,27 @@ def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
     return any(echo.is_present and echo.is_unexplained and echo.closing_speed > MAX_REST for echo in echoes)
 
 
-def _with_facing(
-    landmarks: tuple[Landmark, ...],
-    search: SearchProgress,
-    tracks: tuple[ObjectTrack, ...],
-    inputs: ParkingSystemInput,
-    params: ParkingParams,
-) -> tuple[Landmark, ...]:
-    """Return the landmarks with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan.
+def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan.
 
     Into a slot across the road the bumper passes its corners, where both echoes may come from: they are no surface.
     """
-    is_across = search.slot.type == SlotType.PERPENDICULAR
+    is_across = memory.search.slot.type == SlotType.PERPENDICULAR
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     for number in (FRONT_MIDDLE, REAR_MIDDLE):
-        a = tracks[number]
-        b = tracks[number + 1]
+        a = memory.perception.tracks[number]
+        b = memory.perception.tracks[number + 1]
         is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
         if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
             first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
             second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
             new = facing_segment(first, a.range, second, b.range, variance)
             at = point_between(first, a.range, second, b.range)
-            if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(search.slot_filter, at)):
-                landmarks = put_facing(landmarks, new, params.mapping)
-    return landmarks
+            if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(memory.search.slot_filter, at)):
+                landmarks = put_facing(memory.perception.local_map.landmarks, new, params.mapping)
+                memory = with_landmarks(memory, landmarks)
+    return memory
 
 
 def is_at_rest(track: ObjectTrack) -> bool:

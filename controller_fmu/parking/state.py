@@ -7,6 +7,7 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState, Strategy
 from controller_fmu.parking.following.path_tracking import PathProgress
 from controller_fmu.parking.geometry.polygons import ObstacleMap
+from controller_fmu.parking.map.landmark import Landmark
 from controller_fmu.parking.map.local_map import LandmarkMap
 from controller_fmu.parking.measurement.cycle import MeasurementCycle
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
@@ -101,3 +102,9 @@ class ParkingMemory(NamedTuple):
     """Requested [rad]."""
     speed: float = 0.0
     """Requested [m/s], reverse negative."""
+
+
+def with_landmarks(memory: ParkingMemory, landmarks: tuple[Landmark, ...]) -> ParkingMemory:
+    """Return the memory with other landmarks in its map."""
+    perception = memory.perception
+    return memory._replace(perception=perception._replace(local_map=perception.local_map._replace(landmarks=landmarks)))

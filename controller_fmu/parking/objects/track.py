@@ -61,7 +61,13 @@ def update_track(
     begun = ObjectTrack(measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1)
     if track.confirmations == 0:
         return begun if is_echo else track
-    predicted = _predict(track, own_approach, dt)
+    q = ACCELERATION_DENSITY
+    predicted = track._replace(
+        range=track.range + track.rate * dt - own_approach,
+        rr=track.rr + 2.0 * dt * track.rv + dt * dt * track.vv + q * dt * dt * dt / 3.0,
+        rv=track.rv + dt * track.vv + 0.5 * q * dt * dt,
+        vv=track.vv + q * dt,
+    )
     if not is_echo:
         ends = track.missed >= MAX_COASTING or track.confirmations < MIN_CONFIRMATIONS
         return ObjectTrack() if ends else predicted._replace(missed=track.missed + 1)
@@ -132,13 +138,3 @@ def closing_speed(track: ObjectTrack) -> float:
     if track.rate > 0.0 or track.rate * track.rate < 4.0 * track.vv:
         return 0.0
     return -track.rate
-
-
-def _predict(track: ObjectTrack, own_approach: float, dt: float) -> ObjectTrack:
-    q = ACCELERATION_DENSITY
-    return track._replace(
-        range=track.range + track.rate * dt - own_approach,
-        rr=track.rr + 2.0 * dt * track.rv + dt * dt * track.vv + q * dt * dt * dt / 3.0,
-        rv=track.rv + dt * track.vv + 0.5 * q * dt * dt,
-        vv=track.vv + q * dt,
-    )

@@ -18,7 +18,6 @@ from fmus.compiled_batch import (
     SampleTime,
     StopCondition,
     compile_rows,
-    in_smallest_forms,
     signals_to_read,
 )
 from fmus.lane_rows import compile_lane_rows
@@ -93,10 +92,9 @@ def compile_models(measures: tuple[Measure, ...], scenario: Scenario, choices: C
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    ending = stop_condition_of(scenario)
-    models, kept = in_smallest_forms(scenario.models, ending, [signal_to_record(item) for item in job.measures])
+    models, kept = dict(scenario.models), [signal_to_record(item) for item in job.measures]
     choices = choices_of(scenario, arrays(job, chunk)[0])
-    return explanation(scenario.models, models, study_slices(models, signals_to_read(ending, kept), dict(choices)))
+    return explanation(models, study_slices(models, signals_to_read(stop_condition_of(scenario), kept), dict(choices)))
 
 
 @lru_cache
@@ -111,11 +109,10 @@ def _compile_rows(
     complete = compile_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
-    own, kept = in_smallest_forms(whole, ending, kept)
-    slices = study_slices(own, signals_to_read(ending, kept), dict(choices))
+    slices = study_slices(whole, signals_to_read(ending, kept), dict(choices))
     code = StudyCode(slices, find_compiler().options_for_this_machine())
-    alone = compile_rows(own, ending, kept, faults, code)
-    lanes = None if faults else compile_lane_rows(own, ending, kept, code, alone)
+    alone = compile_rows(whole, ending, kept, faults, code)
+    lanes = None if faults else compile_lane_rows(whole, ending, kept, code, alone)
     return StudyRows(complete, *([] if lanes is None else [lanes]), alone)
 
 

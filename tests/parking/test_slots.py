@@ -361,9 +361,19 @@ def test_how_wide_bays_are_shows_by_cars_beside_each_other(pitch: float, gap: fl
     assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)
 
 
+@pytest.mark.parametrize(("side_length", "middle"), [(4.1, 3.7), (6.4, 3.7), (4.6, 2.55), (1.0, 2.55)])
+def test_how_wide_bays_are_shows_by_cars_that_make_one_side(side_length: float, middle: float) -> None:
+    """Of two or three cars in bays of 2.3 m, of two in bays of 2.8 m; a part of a car tells nothing."""
+    behind = RowMember(-side_length, 0.0, start_known=True, end_known=True)
+    ahead = RowMember(5.1, 6.9, start_known=True, end_known=True)
+    row = SlotRow(members=(ahead, behind, *(RowMember(),) * (MAX_MEMBERS - 2)), used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, ahead=ahead, behind=behind)
+    assert goal_pose(slot, OUTLINE, SlotParams()).x == pytest.approx(middle, abs=0.01)
+
+
 def test_a_rack_on_the_car_beside_two_bays_leaves_the_bay_where_it_is() -> None:
-    """It hides both corners of the car behind: the gap measured is 0.4 m longer than two bays of 2.6 m."""
-    for hidden in (0.0, 0.4):
+    """It hides both corners of the car behind: the gap measured is 0.3 m longer than two bays of 2.6 m."""
+    for hidden in (0.0, 0.3):
         behind = RowMember(-1.8 + hidden, -hidden, start_known=True, end_known=True)
         ahead = RowMember(6.0, 7.8, start_known=True, end_known=True)
         slot = SlotCandidate(SlotType.PERPENDICULAR, row=SlotRow(Pose(), -1.0), behind=behind, ahead=ahead)

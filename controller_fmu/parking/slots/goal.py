@@ -14,7 +14,7 @@ from controller_fmu.parking.slots.candidate import (
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import RowMember, SlotRow
+from controller_fmu.parking.slots.row import RowMember, SlotRow, is_too_short_for_car
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -94,7 +94,7 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     are 2.3 to 2.9 m wide, so n follows from the width of usual bays and of this row's.
     """
     ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead)
-    distance = ahead - candidate.behind.end + 0.5 * _car_width(candidate.behind)
+    distance = car_distance(candidate.behind, candidate.ahead)
     bay = bay_width(candidate.row)
     if distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
@@ -103,26 +103,42 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     return ahead - distance * number / count
 
 
+def car_distance(behind: RowMember, ahead: RowMember) -> float:
+    """Return the distance [m] between the middles of the two cars beside a gap of a row."""
+    return ahead.start + 0.5 * _car_width(ahead) - behind.end + 0.5 * _car_width(behind)
+
+
 def _car_width(member: RowMember) -> float:
     """Return the width [m] of the car beside a slot: as observed, if in full, else as usual.
 
-    Whatever hides both of its corners, such as a bicycle rack, stands in its middle.
+    What hides both of its corners, such as a rack with bicycles, stands in its middle; a shorter side is a part of it.
     """
-    width = member.end - member.start
-    is_one_car = member.start_known and member.end_known and width < CAR_WIDTH + 3.0 * CAR_WIDTH_SIGMA
-    return width if is_one_car else CAR_WIDTH
+    is_one_car = _is_of_cars(member) and bays_within(member) == 0
+    return member.end - member.start if is_one_car else CAR_WIDTH
+
+
+def _is_of_cars(member: RowMember) -> bool:
+    """Return whether a side is the front of a car, or of some, observed in full."""
+    return member.start_known and member.end_known and not is_too_short_for_car(member.end - member.start)
+
+
+def bays_within(member: RowMember) -> int:
+    """Return how many bays lie between the first and the last car across the road that make one side."""
+    return math.floor(max(member.end - member.start - CAR_WIDTH, 0.0) / BAY_WIDTH + 0.5)
 
 
 def bay_width(row: SlotRow) -> float:
     """Return the mean distance [m] from car to car where no place between two is empty; usual bays count as one."""
     total = BAY_WIDTH
     count = 1
-    for number in range(row.used - 1):
-        ahead = row.members[number]
-        behind = row.members[number + 1]
-        is_known = ahead.start_known and ahead.end_known and behind.start_known and behind.end_known
-        pitch = 0.5 * (ahead.start + ahead.end - behind.start - behind.end)
-        if is_known and CAR_WIDTH < pitch < 2.0 * CAR_WIDTH:
-            total += pitch
-            count += 1
+    for number in range(row.used):
+        behind = row.members[number]
+        if _is_of_cars(behind):
+            total += behind.end - behind.start - _car_width(behind)
+            count += bays_within(behind)
+            ahead = row.members[max(number - 1, 0)]
+            distance = car_distance(behind, ahead)
+            if _is_of_cars(ahead) and CAR_WIDTH < distance < 2.0 * CAR_WIDTH:
+                total += distance
+                count += 1
     return total / count

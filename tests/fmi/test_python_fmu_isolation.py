@@ -165,6 +165,7 @@ def test_packages_of_the_host_with_the_same_names_do_no_harm(python_fmus: Any, t
     assert [int(line) > 10 for line in result.stdout.split()] == [True, True, True]
 
 
+@pytest.mark.release
 def test_many_instantiations(python_fmus: Any) -> None:
     """PythonFMU's binary drops a reference to the script's namespace every time; it must survive that."""
     folder = fmpy.extract(str(python_fmus["Toy"]))

@@ -131,11 +131,13 @@ def test_of_the_fmu_of_others_a_mode_is_seen(desk: Any, tmp_path: Path, capsys: 
     assert "decided against" not in page
 
 
-def test_what_nobody_lists_is_told_and_has_no_threshold(
-    desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_nobody_lists_has_no_threshold(desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", str(desk / "short.yaml"), "--min-transition-coverage", "1", "--out", str(tmp_path)]) == 2
     assert "nothing says which transitions there are" in capsys.readouterr().err
+
+
+@pytest.mark.release
+def test_what_nobody_lists_is_told(desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", str(desk / "plain.yaml"), "--coverage", "--out", str(tmp_path)]) == 0
     assert "3 seen, none listed" in capsys.readouterr().out
     data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))

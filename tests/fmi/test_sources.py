@@ -163,7 +163,7 @@ def test_another_platform_needs_ziglang(tmp_path: Path) -> None:
 
 
 @needs_gcc
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("fmi", [2, pytest.param(3, marks=pytest.mark.release)])
 def test_two_fmus_in_one_image(fmi: int, tmp_path: Path) -> None:
     objects = []
     for model in (toy_model.MODEL, table_model.MODEL):

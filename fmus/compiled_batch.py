@@ -103,6 +103,33 @@ def signals_to_read(ending: StopCondition | None, kept: Sequence[RecordedSignal]
     return frozenset(found if ending is None else found | {ending.mode, ending.speed})
 
 
+def in_smallest_forms(
+    models: Mapping[str, Model], ending: StopCondition | None, kept: Sequence[RecordedSignal]
+) -> tuple[dict[str, Model], list[RecordedSignal]]:
+    """Return models and what to keep of their runs so that the same numbers take less to work out.
+
+    A model has its form for smallest values where nothing else is kept of the outputs concerned, and nothing reads
+    them. Their last value is then the smallest.
+    """
+    made, wanted = dict(models), list(kept)
+    names = list(models)
+    wires = connections([part_of(name, model) for name, model in models.items()])
+    read = {f"{names[wire.source]}.{variables(models[names[wire.source]].outputs)[wire.output].name}" for wire in wires}
+    for name, model in models.items():
+        if model.smallest is None:
+            continue
+        of_form = {f"{name}.{output}" for output in model.smallest.outputs}
+        others = [
+            item for item in kept if item.signal not in of_form or item.how != "smallest" or item.when is not None
+        ]
+        concerned = of_form | {f"{name}.{output}" for output in model.smallest.made_of_them}
+        if len(others) == len(kept) or concerned & (read | signals_to_read(ending, others)):
+            continue
+        made[name] = model.in_smallest_form()
+        wanted = [item._replace(how="last") if item.signal in of_form else item for item in wanted]
+    return made, wanted
+
+
 def compile_rows(
     models: Mapping[str, Model],
     ending: StopCondition | None,

@@ -154,6 +154,20 @@ class Assembly(NamedTuple):
     """Inputs as ``part.input`` that are left to others although a part offers them."""
 
 
+class SmallestForm(NamedTuple):
+    """What a model is made of for runs of which only the smallest value of some outputs is kept.
+
+    These outputs hold their smallest value so far, so that they need not be worked out where they cannot be smaller.
+    """
+
+    outputs: frozenset[str]
+    made_of_them: frozenset[str]
+    """Further outputs that mean something else in this form."""
+    state: type[Any]
+    initialize: Callable[..., Any]
+    step: Callable[..., Any]
+
+
 class Model(NamedTuple, Generic[State, Params, Input, Output]):
     """A sampled or continuous model as pure functions over NamedTuples: ``Model[State, Params, Input, Output]``.
 
@@ -197,6 +211,7 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
     substitutes: tuple[tuple[type[Any], type[Any]], ...] = ()
     """(type that the code names, type with the same fields and longer arrays that this model has instead): the same
     code with another capacity."""
+    smallest: SmallestForm | None = None
 
     def new_store(self) -> Any:
         """Return the work arrays of a new instance, all zeros; None if the model has none."""
@@ -241,6 +256,12 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         hidden = frozenset(known) - _those_in(chosen.own, known) | {parameter}
         view = Variant(((parameter, int(value)),), hidden, chosen.states)
         return self._replace(name=name, description=description, view=view)
+
+    def in_smallest_form(self) -> "Model[Any, Params, Input, Output]":
+        """Return the model made of its form for smallest values."""
+        assert self.smallest is not None
+        form = self.smallest
+        return self._replace(state=form.state, initialize=form.initialize, step=form.step, smallest=None)
 
     def all_charts(self) -> list[Chart]:
         """Return its charts and those of its systems, each once."""

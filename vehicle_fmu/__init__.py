@@ -2,9 +2,9 @@
 
 import sys
 
-from modelkit.model import Model
+from modelkit.model import Model, SmallestForm
 from modelkit.terminals import TERMINALS
-from vehicle_fmu import model
+from vehicle_fmu import model, nearest_approach
 from vehicle_fmu.interface import VehicleInput, VehicleOutput, VehicleParams
 
 MODEL = Model(
@@ -20,4 +20,11 @@ MODEL = Model(
     step_size=0.01,
     stop_time=60.0,
     terminals=TERMINALS,
+    smallest=SmallestForm(
+        outputs=frozenset({"clearance"}),
+        made_of_them=frozenset({"contact"}),
+        state=nearest_approach.WatchedVehicle,
+        initialize=nearest_approach.initialize,
+        step=nearest_approach.step,
+    ),
 )

@@ -9,6 +9,7 @@ read at the end of a communication step in which their time has come.
 import math
 from typing import NamedTuple
 
+from modelkit.geometry import NO_HIT
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose, VehicleFault
 from vehicle_fmu.bodies.body import speed_for_display
@@ -31,47 +32,59 @@ class VehicleState(NamedTuple):
 
 def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     """Return the car at rest at its start pose, wheel straight, in park."""
-    fault = VehicleFault.NONE
-    start = params.start
-    ultrasonic = UltrasonicState()
+    state = begin(params)
     gap = 0.0
-    if is_usable(params):
-        ultrasonic = first_readings(start, params.scene, params.car.ultrasonic, params.ultrasonic)
-        gap = _clearance(start, params, 0)
-    else:
-        fault = VehicleFault.BAD_PARAMETER
-        start = Pose()
-    state = VehicleState(initial_car(start, fault == VehicleFault.NONE, params), ultrasonic, fault)
-    return state, _outputs(state, gap, False, params)
+    if state.fault == VehicleFault.NONE:
+        gap = _clearance(state.car.pose, params, 0)
+    return state, outputs(state, gap, False, params)
 
 
 def step(
     state: VehicleState, inputs: VehicleInput, params: VehicleParams, dt_ns: int
 ) -> tuple[VehicleState, VehicleOutput]:
     """Return the vehicle ``dt_ns`` later, its inputs held."""
+    state = advance(state, inputs, params, dt_ns)
+    gap = 0.0
+    if state.fault != VehicleFault.BAD_PARAMETER:
+        gap = _clearance(state.car.pose, params, state.car.time_ns)
+    return state, outputs(state, gap, inputs.manual.active and inputs.manual.confirm, params)
+
+
+def begin(params: VehicleParams) -> VehicleState:
+    """Return the vehicle at time zero."""
+    fault = VehicleFault.NONE
+    start = params.start
+    ultrasonic = UltrasonicState()
+    if is_usable(params):
+        ultrasonic = first_readings(start, params.scene, params.car.ultrasonic, params.ultrasonic)
+    else:
+        fault = VehicleFault.BAD_PARAMETER
+        start = Pose()
+    return VehicleState(initial_car(start, fault == VehicleFault.NONE, params), ultrasonic, fault)
+
+
+def advance(state: VehicleState, inputs: VehicleInput, params: VehicleParams, dt_ns: int) -> VehicleState:
+    """Return the vehicle ``dt_ns`` later, its inputs held."""
     fault = state.fault
     if fault == VehicleFault.NONE and not _is_finite_input(inputs):
         fault = VehicleFault.BAD_INPUT
     car = state.car
     ultrasonic = state.ultrasonic
-    gap = 0.0
-    if fault != VehicleFault.BAD_PARAMETER:
-        if dt_ns > 0:
-            count = _internal_steps(dt_ns, params)
-            start_ns = car.time_ns
-            for number in range(1, count + 1):
-                car = step_car(car, inputs, fault != VehicleFault.NONE, params, start_ns + dt_ns * number // count)
-            if is_due(start_ns, car.time_ns, params.car.ultrasonic.cycle):
-                ultrasonic = measure(
-                    ultrasonic, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns
-                )
-        gap = _clearance(car.pose, params, car.time_ns)
+    if fault != VehicleFault.BAD_PARAMETER and dt_ns > 0:
+        count = _internal_steps(dt_ns, params)
+        start_ns = car.time_ns
+        for number in range(1, count + 1):
+            car = step_car(car, inputs, fault != VehicleFault.NONE, params, start_ns + dt_ns * number // count)
+        if is_due(start_ns, car.time_ns, params.car.ultrasonic.cycle):
+            ultrasonic = measure(
+                ultrasonic, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns
+            )
     state = VehicleState(car, ultrasonic, fault)
-    return state, _outputs(state, gap, inputs.manual.active and inputs.manual.confirm, params)
+    return state
 
 
 def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
-    return clearance(pose, params.car, params.scene, params.ultrasonic.kerb_height, time_ns)
+    return clearance(pose, params.car, params.scene, params.ultrasonic.kerb_height, time_ns, NO_HIT)
 
 
 def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
@@ -79,7 +92,8 @@ def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
     return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
-def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehicleParams) -> VehicleOutput:
+def outputs(state: VehicleState, gap: float, confirms: bool, params: VehicleParams) -> VehicleOutput:
+    """Return what the vehicle tells: ``gap`` is its clearance [m], ``confirms``: a person presses the button."""
     car = state.car
     speed = car.speed
     measured = car.speed if params.odometry.ideal else car.rolled_speed

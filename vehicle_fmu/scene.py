@@ -90,15 +90,17 @@ def obstacle_box(obstacle: Obstacle, time_ns: int) -> Box:
     return Box(x, y, obstacle.heading, obstacle.length, obstacle.width)
 
 
-def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time_ns: int) -> float:
-    """Return the distance [m] from the car to the nearest thing; ``NO_HIT`` in an empty scene.
+def clearance(
+    pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time_ns: int, limit: float = NO_HIT
+) -> float:
+    """Return the distance [m] from the car to the nearest thing; ``limit`` if none is nearer.
 
     In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb lower than ``kerb_height``
     is no contact: it gives 0.
     """
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     body = outline_box(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
-    nearest = NO_HIT
+    nearest = limit
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             box = obstacle_box(obstacle, time_ns)

@@ -125,7 +125,7 @@ def test_what_the_models_remember_is_changed_where_it_lies(translations: Any) ->
     vehicle = next(item.source for item in translations if item.name == "Vehicle")
     assert "    CarState *car = &state->car;\n" in vehicle
     assert re.search(r"\n \* Changes ``state``\.\n \*/\nstatic void step_car\(CarState \*state, ", vehicle)
-    step = vehicle[vehicle.index("static void step(") :]
+    step = vehicle[vehicle.index("static void advance(") :]
     assert "CarState next" not in step
     assert "    step(state, inputs, params, dt_ns, outputs);\n}" in step
 

@@ -18,6 +18,7 @@ from fmus.compiled_batch import (
     SampleTime,
     StopCondition,
     compile_rows,
+    in_smallest_forms,
     signals_to_read,
 )
 from fmus.lane_rows import compile_lane_rows
@@ -92,9 +93,10 @@ def compile_models(measures: tuple[Measure, ...], scenario: Scenario, choices: C
 def explain(job: Job, chunk: Chunk) -> str:
     """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
     scenario = Scenario(**job.scenario)
-    models, kept = dict(scenario.models), [signal_to_record(item) for item in job.measures]
+    ending = stop_condition_of(scenario)
+    models, kept = in_smallest_forms(scenario.models, ending, [signal_to_record(item) for item in job.measures])
     choices = choices_of(scenario, arrays(job, chunk)[0])
-    return explanation(models, study_slices(models, signals_to_read(stop_condition_of(scenario), kept), dict(choices)))
+    return explanation(scenario.models, models, study_slices(models, signals_to_read(ending, kept), dict(choices)))
 
 
 @lru_cache
@@ -109,10 +111,11 @@ def _compile_rows(
     complete = compile_rows(whole, ending, kept, faults)
     if choices is None:
         return complete
-    slices = study_slices(whole, signals_to_read(ending, kept), dict(choices))
+    own, kept = in_smallest_forms(whole, ending, kept)
+    slices = study_slices(own, signals_to_read(ending, kept), dict(choices))
     code = StudyCode(slices, find_compiler().options_for_this_machine())
-    alone = compile_rows(whole, ending, kept, faults, code)
-    lanes = None if faults else compile_lane_rows(whole, ending, kept, code, alone)
+    alone = compile_rows(own, ending, kept, faults, code)
+    lanes = None if faults else compile_lane_rows(own, ending, kept, code, alone)
     return StudyRows(complete, *([] if lanes is None else [lanes]), alone)
 
 

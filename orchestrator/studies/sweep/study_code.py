@@ -69,13 +69,16 @@ class StudyRows:
         return self.complete
 
 
-def explanation(models: Mapping[str, Model], slices: "Mapping[str, Slice]") -> str:
-    """Return what the code of a study omits, a line for each model."""
+def explanation(models: Mapping[str, Model], own: Mapping[str, Model], slices: "Mapping[str, Slice]") -> str:
+    """Return what the code of a study omits, lines for each of the ``models``; ``own``: those that it is made of."""
     lines = []
     for name, omitted in outputs_left_out(models, slices).items():
         count = len(variables(models[name].outputs))
         groups = dict.fromkeys(item.partition("[")[0] for item in omitted)
         lines.append(f"{name}: {len(omitted)} of {count} outputs are not computed: {', '.join(groups) or '-'}")
+        form = models[name].smallest
+        if form is not None and own[name] is not models[name]:
+            lines.append(f"{name}: {', '.join(sorted(form.outputs))} where it cannot be the smallest is not computed")
         choices = slices[name].choices
         systems = models[name].systems
         if choices is not None and systems is not None:

@@ -52,7 +52,7 @@ def watch(
     wheel = at_rest(angle, state.wheel.steering)
     if expected.begun:
         wheel = watch_steering(state.wheel, request, angle, params.limit.steering_tracking_error, rate, dt_ns)
-    return MonitorState(
+    return state._replace(
         waiting=state.waiting + dt_ns if still and (direction != 0 or expected.steering) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
         wrong_direction_ns=state.wrong_direction_ns + dt_ns if sign(speed) * direction < 0.0 and not still else 0,

@@ -61,11 +61,8 @@ class GuoState(NamedTuple):
 class Sample(NamedTuple):
     """What is known at a sample before the chart decides."""
 
-    inputs: ParkingInput
-    planned: Plan
     pose: Pose
     """In the slot's frame."""
-    monitor: MonitorState
     leg: int
     """What is driven, or was before the car comes to a stop."""
     tracking: Tracking
@@ -83,7 +80,6 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
         return _terminate(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
         return _terminate(state, GuoPhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
-    planned = state.plan
     if state.phase == GuoPhase.STANDBY:
         if not params.guo2015.prompting.deceleration > 0.0:
             return _terminate(state, GuoPhase.FAILED, Reason.BAD_PARAMETER, inputs.driver_takeover)
@@ -92,46 +88,47 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
         radius = params.guo2015.radius
         shape = params.guo2015.path
         planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.car.wheelbase)
-    pose = to_slot(inputs.odometry, planned.frame)
+        state = state._replace(plan=Plan())
+        if planned.path.found:
+            state = state._replace(plan=planned)
+    pose = to_slot(inputs.odometry, state.plan.frame)
     watched = inputs.steering_wheel_angle if state.phase == GuoPhase.STANDBY else state.request
     expected = motion_expectation(state.phase)
-    monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
+    state = state._replace(monitor=watch(state.monitor, inputs, expected, watched, dt_ns, params))
     leg = state.driven if state.phase == GuoPhase.STOP else state.leg
-    tracking = track(leg, pose, planned.path, state.piece, params)
-    now = Sample(inputs, planned, pose, monitor, leg, tracking, dt_ns)
-    reason = _reason(state, now, params)
-    guards = _guards(state, now, reason, params)
+    tracking = track(leg, pose, state.plan.path, state.piece, params)
+    now = Sample(pose, leg, tracking, dt_ns)
+    reason = _reason(state, inputs, now, params)
+    guards = _guards(state, inputs, now, reason, params)
     phase, next_leg = transition(state.phase, state.leg, guards)
     if is_over(phase):
         return _terminate(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
-    return _enter_phase(state, now, phase, next_leg, params)
+    return _enter_phase(state, inputs, now, phase, next_leg, params)
 
 
-def _reason(state: GuoState, now: Sample, params: GuoSystemParams) -> int:
+def _reason(state: GuoState, inputs: ParkingInput, now: Sample, params: GuoSystemParams) -> int:
     limit = params.threshold
     expected = motion_expectation(state.phase)
-    reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.manoeuvres, params)
+    reason = reason_to_fail(state.monitor, inputs, expected, state.running_ns, state.manoeuvres, params)
     if reason != Reason.NONE:
         return reason
-    if not now.planned.path.found:
+    if not state.plan.path.found:
         return Reason.NO_PATH
     if abs(now.tracking.lateral_error) > limit.abort_lateral_error:
         return Reason.LEFT_PATH
-    straight = (
-        state.phase == GuoPhase.STRAIGHTEN and abs(now.inputs.steering_wheel_angle) <= limit.steering_angle_reached
-    )
+    straight = state.phase == GuoPhase.STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.steering_angle_reached
     if straight and not within(now.pose.y, now.pose.heading, limit.final_lateral_error, limit.final_heading_error):
         return Reason.MISSED_TARGET
     return Reason.NONE
 
 
-def _guards(state: GuoState, now: Sample, reason: int, params: GuoSystemParams) -> int:
-    wheel = now.inputs.steering_wheel_angle
-    speed = now.inputs.measured_speed
-    path = now.planned.path
-    standing = standing_guards(state.leg, now.pose, now.inputs, params)
+def _guards(state: GuoState, inputs: ParkingInput, now: Sample, reason: int, params: GuoSystemParams) -> int:
+    wheel = inputs.steering_wheel_angle
+    speed = inputs.measured_speed
+    path = state.plan.path
+    standing = standing_guards(state.leg, now.pose, inputs, params)
     return (
-        bit(Guard.TAKEOVER, now.inputs.driver_takeover)
+        bit(Guard.TAKEOVER, inputs.driver_takeover)
         | bit(Guard.FAULT, reason != Reason.NONE)
         | bit(Guard.PLANNED, path.found and abs(speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.steering_angle_reached)
@@ -140,7 +137,9 @@ def _guards(state: GuoState, now: Sample, reason: int, params: GuoSystemParams) 
     )
 
 
-def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSystemParams) -> GuoState:
+def _enter_phase(
+    state: GuoState, inputs: ParkingInput, now: Sample, phase: int, leg: int, params: GuoSystemParams
+) -> GuoState:
     back_on_path = state.phase == GuoPhase.STOP and phase == GuoPhase.PRE_STEER and leg == GuoPhase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
@@ -149,11 +148,11 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
     piece = SECOND_ARC if back_on_path else state.piece
     tracking = now.tracking
     if tracked != now.leg or piece != state.piece:
-        tracking = track(tracked, now.pose, now.planned.path, piece, params)
-    request = _wheel_request(phase, tracking, now.planned, params)
-    swing = _swing(state, phase, request, now, params)
+        tracking = track(tracked, now.pose, state.plan.path, piece, params)
+    request = _wheel_request(phase, tracking, state.plan, params)
+    swing = _swing(state, inputs, phase, request, params)
     begun = state.phase != GuoPhase.STANDBY
-    counted = time_counted(now.dt_ns, now.inputs.measured_speed, params.threshold.standstill, begun)
+    counted = time_counted(now.dt_ns, inputs.measured_speed, params.threshold.standstill, begun)
     return GuoState(
         phase=phase,
         leg=leg,
@@ -163,31 +162,30 @@ def _enter_phase(state: GuoState, now: Sample, phase: int, leg: int, params: Guo
         direction=direction if direction != 0 else state.direction,
         running_ns=state.running_ns + counted,
         piece=tracking.reference.piece,
-        plan=now.planned,
+        plan=state.plan,
         tracking=tracking,
         request=request,
-        moving=is_moving(state.moving, now.inputs.measured_speed, direction, params.threshold.standstill),
-        advice=_advice(state, phase, now, tracking, swing, params),
+        moving=is_moving(state.moving, inputs.measured_speed, direction, params.threshold.standstill),
+        advice=_advice(state, phase, inputs.measured_speed, tracking, swing, params),
         swing=swing,
-        takeover=now.inputs.driver_takeover,
-        monitor=now.monitor,
+        takeover=inputs.driver_takeover,
+        monitor=state.monitor,
     )
 
 
 def _advice(
-    state: GuoState, phase: int, now: Sample, tracking: Tracking, swing: float, params: GuoSystemParams
+    state: GuoState, phase: int, speed: float, tracking: Tracking, swing: float, params: GuoSystemParams
 ) -> float:
-    """Return the speed advised [m/s]; while a stop is requested it may fall, as on the path there, but not rise."""
+    """Return the speed advised [m/s] at ``speed`` [m/s]; while a stop is requested it may fall but not rise."""
     if phase == GuoPhase.STANDBY:
         return params.guo2015.prompting.speed_limit
     driving = DIRECTION_OF_PHASE[phase] != 0
     if not driving and phase != GuoPhase.STOP:
         return state.advice
     last_phase = phase if driving else state.driven
-    speed = now.inputs.measured_speed
     advice = swing
     if last_phase == GuoPhase.PATH_TRACKING:
-        advice = path_speed(now.planned.path, tracking.reference, speed, now.monitor.wheel.steering, params)
+        advice = path_speed(state.plan.path, tracking.reference, speed, state.monitor.wheel.steering, params)
     else:
         left = -DIRECTION_OF_PHASE[last_phase] * tracking.ahead
         advice = point_speed(left, speed, params.guo2015.prompting)
@@ -195,15 +193,15 @@ def _advice(
     return advice if driving else min(state.advice, advice)
 
 
-def _swing(state: GuoState, phase: int, request: float, now: Sample, params: GuoSystemParams) -> float:
+def _swing(state: GuoState, inputs: ParkingInput, phase: int, request: float, params: GuoSystemParams) -> float:
     """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
     limit = params.guo2015.prompting.speed_limit
-    wheel = now.inputs.steering_wheel_angle
+    wheel = inputs.steering_wheel_angle
     if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.steering_tracking_error:
         return limit
     lock = params.car.steering.angle_limit
     angle = clamp(wheel, -lock, lock) / params.car.steering.ratio
-    speed = swing_speed(angle, request / params.car.steering.ratio, now.monitor.wheel.steering, params)
+    speed = swing_speed(angle, request / params.car.steering.ratio, state.monitor.wheel.steering, params)
     return min(state.swing, speed) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 

@@ -35,6 +35,13 @@ typedef struct {
     const lane_i *due;
 } Wire;
 
+/* A number that is a vector at both ends. */
+typedef struct {
+    const lane_i *from;
+    lane_i *to;
+    const lane_i *due;
+} VectorWire;
+
 /* What is noted of a number that is kept. */
 typedef struct {
     lane_d value, before;
@@ -51,8 +58,12 @@ typedef struct {
     const Batch *batch;
     Slave *slaves;
     Wire *wires;
+    VectorWire *vector_wires;
+    int64_t wire_count, vector_wire_count;
     Place *kept, *when;
     Note *notes;
+    int64_t *noted; /* which of the numbers kept are noted at each exchange */
+    int64_t noted_count;
     Place mode, speed;
     Courses courses;
 } Runner;
@@ -100,13 +111,14 @@ static void hand_over_boolean(const Wire *wire) {
 }
 
 static void hand_over(const Runner *runner) {
-    for (int64_t k = 0; k < runner->batch->link_count; k++) {
+    for (int64_t k = 0; k < runner->vector_wire_count; k++) {
+        const VectorWire *wire = &runner->vector_wires[k];
+        *wire->to = lane_pick_i(*wire->due, *wire->from, *wire->to);
+    }
+    for (int64_t k = 0; k < runner->wire_count; k++) {
         const Wire *wire = &runner->wires[k];
         const Place source = wire->source, target = wire->target;
-        if (is_vector(source) && is_vector(target)) {
-            lane_i *to = (lane_i *)(void *)target.at;
-            *to = lane_pick_i(*wire->due, *(const lane_i *)(const void *)source.at, *to);
-        } else if (source.kind == LIBRARY_BOOLEAN) {
+        if (source.kind == LIBRARY_BOOLEAN) {
             hand_over_boolean(wire);
         } else {
             LANE_EACH(l)
@@ -132,9 +144,9 @@ static void fetch(const Slave *slave) {
 }
 
 static lane_i is_in(lane_d mode, uint64_t values) {
-    lane_i r;
-    LANE_EACH(l) r[l] = -(int64_t)(mode[l] >= 0.0 && mode[l] < 64.0 && (values >> (unsigned)mode[l] & 1u));
-    return r;
+    const lane_i inside = (mode >= 0.0) & (mode < 64.0);
+    const lane_i bit = __builtin_convertvector(lane_pick_d(inside, mode, LANE_DOUBLE(0.0)), lane_i);
+    return inside & -((LANE_INT(values) >> bit) & 1);
 }
 
 static lane_i time_of(const Courses *courses) {
@@ -147,10 +159,10 @@ static int is_at_end(const Kept *kept) { return kept->how == LAST && !kept->valu
 /* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
 static void note(const Runner *runner) {
     const Courses *courses = &runner->courses;
-    for (int64_t k = 0; k < runner->batch->kept_count; k++) {
+    for (int64_t n = 0; n < runner->noted_count; n++) {
+        const int64_t k = runner->noted[n];
         const Kept *wanted = &runner->batch->kept[k];
         Note *note = &runner->notes[k];
-        if (is_at_end(wanted)) continue;
         const lane_i counts = wanted->values ? is_in(look(runner->when[k]), wanted->values) : LANE_INT(-1);
         const lane_i where = courses->busy & counts;
         const lane_d now = look(runner->kept[k]), kept = note->value;
@@ -276,9 +288,16 @@ static void connect(Runner *runner, int is_every_step) {
             place_of(runner->slaves, to),
             &runner->slaves[link->target].due,
         };
-        runner->wires[k] = wire;
+        if (is_vector(wire.source) && is_vector(wire.target)) {
+            const VectorWire same = {(const lane_i *)(const void *)wire.source.at, (lane_i *)(void *)wire.target.at,
+                                     wire.due};
+            runner->vector_wires[runner->vector_wire_count++] = same;
+        } else {
+            runner->wires[runner->wire_count++] = wire;
+        }
     }
     for (int64_t k = 0; k < batch->kept_count; k++) {
+        if (!is_at_end(&batch->kept[k])) runner->noted[runner->noted_count++] = k;
         runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);
         if (batch->kept[k].values) runner->when[k] = place_of(runner->slaves, batch->kept[k].when);
     }
@@ -294,6 +313,8 @@ static size_t lay_out(Runner *runner, const LaneLibrary *const *lanes, unsigned 
     size_t taken = 0;
     runner->slaves = part(memory, &taken, (size_t)batch->model_count * sizeof(Slave));
     runner->wires = part(memory, &taken, (size_t)batch->link_count * sizeof(Wire));
+    runner->vector_wires = part(memory, &taken, (size_t)batch->link_count * sizeof(VectorWire));
+    runner->noted = part(memory, &taken, (size_t)batch->kept_count * sizeof(int64_t));
     runner->kept = part(memory, &taken, (size_t)batch->kept_count * sizeof(Place));
     runner->when = part(memory, &taken, (size_t)batch->kept_count * sizeof(Place));
     runner->notes = part(memory, &taken, (size_t)batch->kept_count * sizeof(Note));

@@ -12,6 +12,7 @@ from fmus.locks import cache_file
 from fmus.native.compilers import Compiler, find_compiler
 from fmus.native.platforms import PLATFORMS, CompileTarget, host, host_target
 from fmus.native.sines import sine_table
+from fmus.native.tangents import tangent_table
 
 C_FILES = Path(__file__).parent / "c"
 
@@ -34,7 +35,8 @@ def lane_batch_library(options: tuple[str, ...]) -> Path:
 
 def lane_headers() -> dict[str, str]:
     """Return the headers of C in lanes."""
-    return {**own_files("lane_library.h", "lanes.h", "lane_math.h"), "lane_sines.h": sine_table()}
+    tables = {"lane_sines.h": sine_table(), "lane_tangents.h": tangent_table()}
+    return own_files("lane_library.h", "lanes.h", "lane_math.h") | tables
 
 
 def cache_library(

@@ -10,12 +10,16 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from pycparser import c_parser
 
 import tests.compiler.test_lanes as here
 from fmus.compiled_batch import RecordedSignal, compile_rows
 from fmus.compiler.lanes import NoLanesError
+from fmus.compiler.lanes.costs import Costs
+from fmus.compiler.lanes.reading import Declarations
 from fmus.compiler.slicing import Slice
 from fmus.lane_rows import compile_lane_rows, has_lanes
+from fmus.native import tangents
 from fmus.native.compilers import CompilerError, find_compiler
 from fmus.native.libraries import load_lanes
 from fmus.native.library_cache import lane_headers
@@ -175,6 +179,9 @@ class Outputs(NamedTuple):
 
 
 TABLE = (0.5, -0.25, 4.0)
+SMALL_TABLE = (3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8, 9, 7, 9, 3)
+LARGE_TABLE = (2.0, 7.0, 1.0, 8.0, 2.5, 8.5, 1.5, 8.25, 4.0, 5.0, 9.0, 0.5, 4.5, 5.5, 2.25, 3.5, 3.0)
+"""More numbers than two vectors have room for."""
 
 
 def first_above(row: tuple[Cell, ...], limit: float) -> int:
@@ -236,9 +243,9 @@ def step(state: State, inputs: Inputs, params: Parameters, dt_ns: int) -> tuple[
         item = row[(index + state.next) % 5]
         total = total + item.value * item.weight
     place = first_above(row, 2.0) * 10 + halvings(abs(total), params.rounds)
-    return State(row, state.next + 1), Outputs(
-        total, place, total > 0.0, turned(total, params.start) + math.atan(total)
-    )
+    place = place + 100 * SMALL_TABLE[(state.next + 5 * params.rounds) % 16]
+    found = turned(total, params.start) + math.atan(total) + LARGE_TABLE[(state.next + 6 * params.rounds) % 17]
+    return State(row, state.next + 1), Outputs(total, place, total > 0.0, found)
 
 
 @pytest.mark.parametrize("options", OPTIONS)
@@ -248,6 +255,18 @@ def test_branches_loops_and_places_that_differ_between_lanes(options: Any) -> No
     parameters = np.column_stack([random.normal(size=RUNS), random.integers(0, 7, RUNS), random.integers(0, 2, RUNS)])
     load_lanes(model, all_of(model), options)
     assert differing(model, parameters.astype(np.float64), times_of(RUNS), options) == []
+
+
+def test_a_branch_that_costs_little_is_not_tested() -> None:
+    parser = c_parser.CParser()
+    text = "double cheap(double x) {{ if (x < 0.0) {{ return -x; }} return x; }} double f(double x) {{ return {}; }}"
+    costs = []
+    for expression in ("cheap(x)", "2.0 * x + 1.0", "x / 2.0", "sin(x)", "cheap(sin(x))"):
+        file = Declarations("", text.format(expression), "Outputs", frozenset())
+        costs.append(Costs(file).is_small(file.functions["f"].body))
+    loop = parser.parse("void f(void) { for (int i = 0; i < 2; ++i) { g = 1; } }").ext[0].body
+    assert costs == [True, True, False, False, False]
+    assert not Costs(file).is_small(loop)
 
 
 MATHS = """
@@ -298,9 +317,11 @@ int main(int count, char **arguments) {
 """
 
 
+@pytest.mark.parametrize("has_table", [True, False])
 @pytest.mark.parametrize("options", OPTIONS)
-def test_functions_have_the_bits_of_the_platform(options: Any, tmp_path: Path) -> None:
-    for name, text in {**lane_headers(), "maths.c": MATHS}.items():
+def test_functions_have_the_bits_of_the_platform(options: Any, has_table: bool, tmp_path: Path) -> None:
+    tangents = {} if has_table else {"lane_tangents.h": "#define LANE_TANGENTS 0\n"}
+    for name, text in {**lane_headers(), "maths.c": MATHS, **tangents}.items():
         (tmp_path / name).write_text(text)
     find_compiler("zig").run(["-std=gnu99", "-ffp-contract=off", *options, "-o", "maths", "maths.c", "-lm"], tmp_path)
     done = subprocess.run([str(tmp_path / "maths"), "40000"], capture_output=True, text=True, check=True)
@@ -318,13 +339,49 @@ def test_no_lanes_without_a_compiler_that_knows_vectors(monkeypatch: pytest.Monk
     assert compile_lane_rows({"Laned": model}, None, kept, code, lambda *given: None) is None
 
 
-def test_no_lanes_where_the_platform_has_another_sine(monkeypatch: pytest.MonkeyPatch) -> None:
-    table = lane_headers()["lane_sines.h"]
-    monkeypatch.setattr("fmus.native.library_cache.sine_table", lambda: table.replace("0x1.fffeaaaaeeeefp-8", "0x1p-7"))
+@pytest.mark.parametrize(
+    ("maker", "number", "other"),
+    [("sine_table", "0x1.fffeaaaaeeeefp-8", "0x1p-7"), ("tangent_table", "0x1.100001b1a7010p-4", "0x1.1p-4")],
+)
+def test_no_lanes_where_the_platform_has_another_table(
+    maker: str, number: str, other: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = lane_headers()[f"lane_{maker.partition('_')[0]}s.h"]
+    assert number in table
+    monkeypatch.setattr(f"fmus.native.library_cache.{maker}", lambda: table.replace(number, other))
     model = Model("Laned", "a model", here, State, Parameters, Inputs, Outputs, initialize, step, 0.01, 1.0)
     code = StudyCode({"Laned": Slice(frozenset({"sum"}), None)}, OPTIONS[0])
     kept = [RecordedSignal("last", "Laned.sum")]
     assert compile_lane_rows({"Laned": model}, None, kept, code, lambda *given: None) is None
+
+
+def tangents_in_file() -> Any:
+    """Return rows as a file of functions has them: x, tan x, cot x, rest."""
+    x = (16.0 + np.arange(tangents.POINT_COUNT)) / 256.0
+    return np.column_stack([x, [math.tan(a) for a in x], [1.0 / math.tan(a) for a in x], np.zeros(len(x))])
+
+
+def test_the_tangents_of_the_platform_are_found_in_its_file() -> None:
+    rows = tangents_in_file()
+    around = np.array([math.nan, 0.0625, 1.0])
+    data = b"".join([around.tobytes(), rows.tobytes(), around.tobytes(), b"xyz"])
+    assert tangents.find_points(data) == rows.tolist()
+    assert tangents.find_points(rows.tobytes()[:-8]) == []
+    for column in range(3):
+        other = rows.copy()
+        other[100, column] *= 1.0 + 1e-6
+        assert tangents.find_points(other.tobytes()) == []
+
+
+def test_without_tangents_in_a_file_there_is_no_table(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert tangents.tangent_table().startswith(f"#define LANE_TANGENTS {tangents.ROW_COUNT}\n")
+    for text in (None, "", f"7f00-7f01 r--p 0 0 0 {tmp_path}/libm.so.6\n"):
+        mappings = tmp_path / "maps"
+        mappings.unlink(missing_ok=True)
+        if text is not None:
+            mappings.write_text(text)
+        monkeypatch.setattr(tangents, "MAPPINGS", mappings)
+        assert tangents.tangent_table() == "#define LANE_TANGENTS 0\n"
 
 
 def test_a_machine_without_vectors_has_no_lanes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,6 +20,7 @@
 #define LANE_MATH_H
 
 #include "lane_sines.h"
+#include "lane_tangents.h"
 #include "lanes.h"
 
 #define LANE_MOST 1000.0
@@ -116,6 +117,39 @@ static inline LaneQuarter lane_quarter(lane_i live, lane_d x) {
     return turn;
 }
 
+/* A row of a table for each lane. */
+typedef struct {
+    lane_d a, b, c, d;
+} LaneRow;
+
+static inline LaneRow lane_row(const double table[][4], lane_i number) {
+#if LANES == 8
+#define LANE_TWO(i, j) \
+    _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(table[number[i]])), _mm256_loadu_pd(table[number[j]]), 1)
+    const __m512d even = LANE_TWO(0, 2), odd = LANE_TWO(1, 3), later_even = LANE_TWO(4, 6), later_odd = LANE_TWO(5, 7);
+    const __m512d low = _mm512_unpacklo_pd(even, odd), later_low = _mm512_unpacklo_pd(later_even, later_odd);
+    const __m512d high = _mm512_unpackhi_pd(even, odd), later_high = _mm512_unpackhi_pd(later_even, later_odd);
+    const LaneRow row = {
+        (lane_d)_mm512_shuffle_f64x2(low, later_low, 0x88),
+        (lane_d)_mm512_shuffle_f64x2(high, later_high, 0x88),
+        (lane_d)_mm512_shuffle_f64x2(low, later_low, 0xDD),
+        (lane_d)_mm512_shuffle_f64x2(high, later_high, 0xDD),
+    };
+#else
+    const __m256d first = _mm256_loadu_pd(table[number[0]]), second = _mm256_loadu_pd(table[number[1]]);
+    const __m256d third = _mm256_loadu_pd(table[number[2]]), fourth = _mm256_loadu_pd(table[number[3]]);
+    const __m256d low = _mm256_unpacklo_pd(first, second), later_low = _mm256_unpacklo_pd(third, fourth);
+    const __m256d high = _mm256_unpackhi_pd(first, second), later_high = _mm256_unpackhi_pd(third, fourth);
+    const LaneRow row = {
+        (lane_d)_mm256_permute2f128_pd(low, later_low, 0x20),
+        (lane_d)_mm256_permute2f128_pd(high, later_high, 0x20),
+        (lane_d)_mm256_permute2f128_pd(low, later_low, 0x31),
+        (lane_d)_mm256_permute2f128_pd(high, later_high, 0x31),
+    };
+#endif
+    return row;
+}
+
 /* The tabulated angle next to |a|, and what |a| + rest is beyond it. */
 typedef struct {
     lane_d beyond, rest, sin, sin_rest, cos, cos_rest;
@@ -123,15 +157,15 @@ typedef struct {
 
 static inline LaneNode lane_node(lane_d a, lane_d rest) {
     const lane_d size = lane_fabs(a), shifted = size + 0x1.8p45;
-    const lane_i row = (lane_i)shifted & (LANE_SINES - 1);
-    LaneNode node = {.beyond = size - (shifted - 0x1.8p45), .rest = (lane_d)((lane_i)rest ^ ((lane_i)a & INT64_MIN))};
-    LANE_EACH(l) {
-        const double *found = lane_sines[row[l]];
-        node.sin[l] = found[0];
-        node.sin_rest[l] = found[1];
-        node.cos[l] = found[2];
-        node.cos_rest[l] = found[3];
-    }
+    const LaneRow row = lane_row(lane_sines, (lane_i)shifted & (LANE_SINES - 1));
+    const LaneNode node = {
+        .beyond = size - (shifted - 0x1.8p45),
+        .rest = (lane_d)((lane_i)rest ^ ((lane_i)a & INT64_MIN)),
+        .sin = row.a,
+        .sin_rest = row.b,
+        .cos = row.c,
+        .cos_rest = row.d,
+    };
     return node;
 }
 
@@ -209,8 +243,37 @@ static __attribute__((noinline)) void lane_sincos_of(LaneCall *call, lane_i live
     call->x = lane_pick_d(live, x, call->x);
 }
 
+#if LANE_TANGENTS
+#define LANE_LAST_TANGENT 0x1.92f1ap-1
+
+/* Tangent of |x| <= LANE_LAST_TANGENT from the platform's own table, with its roundings. */
+static inline lane_d lane_near_tan(lane_i live, lane_d x) {
+    const lane_d size = lane_fabs(x);
+    const lane_i is_small = size <= 0x1.f212dp-5;
+    lane_d found = x;
+    if (lane_any(live & ~is_small)) {
+        const lane_d place = lane_fma(size, LANE_DOUBLE(256.0), LANE_DOUBLE(-15.5)), shifted = place + 0x1.8p52;
+        const lane_i below = shifted - 0x1.8p52 > place;
+        const LaneRow row = lane_row(lane_tangents, ((lane_i)shifted + below) & (LANE_TANGENTS - 1));
+        const lane_d z = size - row.a, square = z * z;
+        const lane_d sum = lane_fma(square, LANE_DOUBLE(0x1.11112e0a6b45fp-3), LANE_DOUBLE(0x1.5555555554dbdp-2));
+        const lane_d tan = lane_fma(z * square, sum, z);
+        found = lane_copysign(row.b + row.d * tan / (row.c - tan), x);
+    }
+    if (lane_any(live & is_small)) {
+        const lane_d square = x * x;
+        lane_d sum = lane_fma(LANE_DOUBLE(0x1.2385a3cf2e4eap-7), square, LANE_DOUBLE(0x1.664ed49cfc666p-6));
+        sum = lane_fma(sum, square, LANE_DOUBLE(0x1.ba1ba1cdb8745p-5));
+        sum = lane_fma(sum, square, LANE_DOUBLE(0x1.11111111107c6p-3));
+        sum = lane_fma(sum, square, LANE_DOUBLE(0x1.5555555555555p-2));
+        found = lane_pick_d(is_small, lane_fma(x * square, sum, x), found);
+    }
+    return found;
+}
+#endif
+
 /* Sine and cosine of |a| + rest are those of the angle in the table and of what is beyond it, in two doubles each. */
-static __attribute__((noinline)) void lane_tan_of(LaneCall *call, lane_i live, lane_d x) {
+static __attribute__((noinline)) lane_d lane_summed_tan(lane_i live, lane_d x) {
     const LaneQuarter turn = lane_quarter(live, x);
     const LaneNode node = lane_node(turn.a, turn.rest);
     const lane_d size = lane_fabs(x), d = node.beyond, square = d * d;
@@ -233,10 +296,21 @@ static __attribute__((noinline)) void lane_tan_of(LaneCall *call, lane_i live, l
     const lane_d unsure = lane_pick_d(size < LANE_TABULATED, LANE_DOUBLE(0.004), beyond);
     const lane_i asks = ~(size < LANE_MOST) | ((lane_fabs(turn.a) < 0x1p-30) & (turn.quarter != 0));
     const lane_i is_small = size < LANE_LEAST;
-    const lane_d found = lane_round(live & ~is_small, sum, unsure, asks, x, tan);
-    call->result = lane_pick_d(live, lane_pick_d(is_small, x, found), call->result);
+    return lane_pick_d(is_small, x, lane_round(live & ~is_small, sum, unsure, asks, x, tan));
+}
+
+static __attribute__((noinline)) void lane_tan_of(LaneCall *call, lane_i live, lane_d x) {
+#if LANE_TANGENTS
+    const lane_i far = live & ~(lane_fabs(x) <= LANE_LAST_TANGENT);
+    lane_d found = lane_near_tan(live & ~far, x);
+    if (lane_any(far)) found = lane_pick_d(far, lane_summed_tan(far, x), found);
+#else
+    const lane_d found = lane_summed_tan(live, x);
+#endif
+    call->result = lane_pick_d(live, found, call->result);
     call->x = lane_pick_d(live, x, call->x);
 }
+
 
 static __attribute__((noinline)) void lane_atan_of(LaneCall *call, lane_i live, lane_d x) {
     static const double tail[] = {0x1.9999999999999p-3,  -0x1.24924924923ccp-3, 0x1.c71c71c7044c3p-4,

@@ -8,7 +8,7 @@ from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.facing_surface import point_between
-from controller_fmu.parking.map.free_space import FreeSpace
+from controller_fmu.parking.map.free_space import MAX_RAYS, FreeSpace, Ray
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
@@ -202,6 +202,23 @@ def test_a_car_that_is_still_being_passed_is_no_pillar() -> None:
     assert not is_too_short_for_car(member.start_length)
 
 
+COS, SIN = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
+FREE_RAYS = tuple(Ray(SensorPose(-4.0 + 0.1 * n, 0.5, 0.0, -1.0, COS, SIN), 5.0) for n in range(MAX_RAYS))
+"""Of a sensor on the road that measured nothing nearer than 5 m."""
+
+
+def test_two_edges_show_no_gap_that_was_not_observed_free() -> None:
+    """A pedestrian hides as much of a wall: the echoes of the wall end where they begin again behind the pedestrian."""
+    row = SlotRow(
+        side=-1.0, members=(RowMember(2.7, 8.0, 0.0, True), RowMember(-9.0, 0.0, 0.0, end_known=True)), used=2
+    )
+    row = row._replace(members=row.members + (RowMember(),) * (MAX_MEMBERS - 2))
+    nothing = (Landmark(),) * MAX_LANDMARKS
+    for rays, is_gap in ((FreeSpace().right, False), (FREE_RAYS, True)):
+        found = find_slot(row, nothing, rays, OUTLINE, SlotParams(), MappingParams())
+        assert (found.type != SlotType.NONE) == is_gap
+
+
 def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
     """Between the car passed first and the bay stands a pillar, of which only a corner was measured."""
     cars = [side(-1.8, -1.5, 0.0, 1.8), side(4.2, -1.5, 0.0, 1.8)]
@@ -210,7 +227,7 @@ def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
     for posts, end in (([], -0.9), ([pillar], 0.0), ([behind], -0.9)):
         landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 2 - len(posts)))
         row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
-        slot = find_slot(row, landmarks, LandmarkMap().free_space.right, OUTLINE, SlotParams(), MappingParams())
+        slot = find_slot(row, landmarks, FREE_RAYS, OUTLINE, SlotParams(), MappingParams())
         edge = row_point(slot.row, slot.behind.end, slot.front)
         assert edge.x == pytest.approx(end, abs=0.01)
 
@@ -232,7 +249,7 @@ def test_of_the_parts_between_posts_the_one_passed_last_counts() -> None:
     posts = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in ((-1.0, -1.1), (0.4, -1.5))]
     landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 4))
     row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
-    slot = find_slot(row, landmarks, LandmarkMap().free_space.right, OUTLINE, SlotParams(), MappingParams())
+    slot = find_slot(row, landmarks, FREE_RAYS, OUTLINE, SlotParams(), MappingParams())
     assert row_point(slot.row, slot.behind.end, slot.front).x == pytest.approx(0.4, abs=0.01)
     assert row_point(slot.row, slot.ahead.start, slot.front).x == pytest.approx(3.3, abs=0.01)
 
@@ -420,7 +437,7 @@ def test_posts_beside_cars_narrow_a_slot_but_move_no_front() -> None:
     row = SlotRow(side=-1.0, members=(*cars, *(RowMember(),) * (MAX_MEMBERS - 2)), used=2)
     posts = [Landmark(LandmarkType.POINT, sense * (0.5 * width - off), -0.6, confirmations=9) for sense in (-1.0, 1.0)]
     landmarks = (*posts, *(Landmark(),) * (MAX_LANDMARKS - 2))
-    slot = find_slot(row, landmarks, FreeSpace().right, OUTLINE, SlotParams(), MappingParams())
+    slot = find_slot(row, landmarks, FREE_RAYS, OUTLINE, SlotParams(), MappingParams())
     assert slot.ahead.start - slot.behind.end == pytest.approx(width - 2.0 * off)
     assert slot.front == pytest.approx(0.0)
     known = slot_of_filter(slot, begin_slot_filter(slot), OUTLINE)

@@ -293,10 +293,9 @@ def gap_depth(
 
 
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
-    """Return whether the gap behind the fronts has been observed free, as deep as it is, or its edges have.
+    """Return whether the gap behind the fronts has been observed free, as deep as it is; less of it if an edge is known.
 
-    From afar the corners of a narrow gap hide what is between them; then the way in will show it. Of an edge that no
-    echo came from, the free mouth shows that the gap reaches it.
+    Two edges alone show no gap: a pedestrian before a wall hides as much of it, and its echoes end there.
     """
     count = 0
     for deep in FREE_DEPTHS:
@@ -305,9 +304,8 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
             point = row_point(candidate.row, x, candidate.front + min(deep, 0.5 * candidate.depth))
             if is_free(rays, point.x, point.y):
                 count += 1
-    has_edges = candidate.behind.end_known and candidate.ahead.start_known
     has_edge = candidate.behind.end_known or candidate.ahead.start_known
-    return count >= MIN_FREE or has_edges or (has_edge and count >= MIN_FREE - 1)
+    return count >= MIN_FREE or (has_edge and count >= MIN_FREE - 1)
 
 
 def row_point(row: SlotRow, along: float, deep: float) -> Point:

@@ -1,4 +1,4 @@
-"""Correction of a slot while the vehicle enters it: by the neighbours' flanks, and by the obstacle at its end."""
+"""Correction of a slot while the vehicle enters it: by flanks and posts beside it, and by the obstacle at its end."""
 
 import math
 
@@ -9,8 +9,6 @@ from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_WIDTH, MappingParams
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
 from controller_fmu.parking.slots.row import is_too_short_for_car
-from modelkit.geometry import Point
-from modelkit.maths import wrap_angle
 
 MIN_CORRECTION_GATE = 0.2
 CORRECTION_GATE_SIGMA = 3.0
@@ -18,10 +16,6 @@ CORRECTION_GATE_SIGMA = 3.0
 known better: corners err by 7 cm rms after entering."""
 MIN_FLANK = 0.5
 """A shorter side [m] is no flank of a car; in the gap it may be a pillar's."""
-MIN_FACE = 0.2
-"""And this [m] of a neighbour's end: the distance of two sensors."""
-MAX_FACE_ANGLE = 0.35
-"""Such an end is known less exactly, and cars stand misaligned [rad]."""
 MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
 
@@ -62,40 +56,21 @@ def correction_gate(sigma: float) -> float:
 def correct_slot(
     candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
 ) -> SlotCandidate:
-    """Return the slot between what has been measured of its neighbours' sides that face it, as deep as is known now."""
+    """Return the slot between the flanks and posts that have been measured across the road, as deep as is known now."""
     corrected = candidate
     for landmark in landmarks:
-        if is_confirmed(landmark, params):
-            middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
-            point = point_to_frame(middle.x, middle.y, candidate.row.frame)
-            if candidate.type != SlotType.PARALLEL:
-                corrected = _beside_flank(corrected, candidate, landmark, point, outline)
-            elif _is_end_of_neighbour(landmark, candidate, point):
-                sigma = math.sqrt(offset_variance(landmark, 0.5 * (landmark.start + landmark.end)))
-                corrected = _with_edge(corrected, candidate, point.x, sigma, False)
+        if candidate.type != SlotType.PARALLEL and is_confirmed(landmark, params):
+            corrected = _beside_flank(corrected, candidate, landmark, outline)
     return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))
 
 
-def _is_end_of_neighbour(side: Landmark, candidate: SlotCandidate, middle: Point) -> bool:
-    """Return whether a side is a neighbour's end beside a parallel slot; its middle [m] is in the row's frame."""
-    deep = candidate.row.side * middle.y - candidate.front
-    is_long = side.type == LandmarkType.SEGMENT and length_of(side) > MIN_FACE
-    return is_long and _angle_to_row(side, candidate) < MAX_FACE_ANGLE and 0.0 < deep < CAR_WIDTH
-
-
-def _angle_to_row(side: Landmark, candidate: SlotCandidate) -> float:
-    """Return by how much a side is turned against the direction into the slot [rad], without sign."""
-    angle = wrap_angle(side.heading - candidate.row.frame.heading - 0.5 * math.pi)
-    return min(abs(angle), math.pi - abs(angle))
-
-
 def _beside_flank(
-    corrected: SlotCandidate, candidate: SlotCandidate, landmark: Landmark, middle: Point, outline: VehicleOutline
+    corrected: SlotCandidate, candidate: SlotCandidate, landmark: Landmark, outline: VehicleOutline
 ) -> SlotCandidate:
-    """Return a perpendicular slot beside a landmark, if that is a neighbour's flank, or a post or pillar in the gap.
-
-    ``middle`` [m] is the landmark's in the row's frame.
-    """
+    """Return a perpendicular slot beside a landmark, if that is a neighbour's flank, or a post or pillar in the gap."""
+    along = 0.5 * (landmark.start + landmark.end)
+    at = segment_point(landmark, along)
+    middle = point_to_frame(at.x, at.y, candidate.row.frame)
     deep = candidate.row.side * middle.y - candidate.front
     length = length_of(landmark)
     is_behind = 2.0 * middle.x < candidate.behind.end + candidate.ahead.start
@@ -108,9 +83,9 @@ def _beside_flank(
         return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
     side_length = candidate.behind.end_length if is_behind else candidate.ahead.start_length
     is_of_car = not is_too_short_for_car(side_length)
-    if deep > 0.0 and _angle_to_row(landmark, candidate) < MAX_ANGLE:
-        turn = landmark.heading - candidate.row.frame.heading
+    turn = landmark.heading - candidate.row.frame.heading
+    if deep > 0.0 and abs(math.cos(turn)) < math.sin(MAX_ANGLE):
         further = candidate.row.side * (outline.half_length - deep) / math.sin(turn)
-        sigma = math.sqrt(offset_variance(landmark, 0.5 * (landmark.start + landmark.end) + further))
+        sigma = math.sqrt(offset_variance(landmark, along + further))
         return _with_edge(corrected, candidate, middle.x + further * math.cos(turn), sigma, is_of_car)
     return corrected

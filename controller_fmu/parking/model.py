@@ -11,7 +11,6 @@ from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
 from controller_fmu.parking.system import parking_sample
-from modelkit.car import Car
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt
 
@@ -26,7 +25,9 @@ class ParkingModelState(NamedTuple):
 def parking_initialize(params: ParkingParams) -> tuple[ParkingModelState, ParkingOutput]:
     """Return the state and the outputs at time zero."""
     clock = begin(params)
-    state = ParkingModelState(clock._replace(usable=clock.usable and has_outline(params.car)))
+    car = params.car
+    has_outline = is_finite(car.front_overhang + car.rear_overhang + car.width) and car.width > 0.0
+    state = ParkingModelState(clock._replace(usable=clock.usable and has_outline))
     return state, parking_outputs(state.memory, params)
 
 
@@ -48,8 +49,3 @@ def parking_step(
         memory = parking_sample(work, memory, inputs, params, period_ns)
     state = ParkingModelState(clock, memory)
     return state, parking_outputs(state.memory, params)
-
-
-def has_outline(car: Car) -> bool:
-    """Return whether the car's overhangs and width [m] make sense."""
-    return is_finite(car.front_overhang + car.rear_overhang + car.width) and car.width > 0.0

@@ -104,12 +104,11 @@ def alarm_of(memory: ParkingMemory) -> int:
         return ParkingAlarm.NONE
     if memory.search.is_fast:
         return ParkingAlarm.SLOW_DOWN
-    is_short = memory.search.rejected == Reason.SLOT_TOO_SHORT
-    is_shallow = memory.search.rejected == Reason.SLOT_TOO_SHALLOW
     refuses = memory.search.slot.type == SlotType.NONE
-    if refuses and (is_short or is_shallow):
-        return ParkingAlarm.SLOT_TOO_SHORT if is_short else ParkingAlarm.SLOT_TOO_SHALLOW
-    return ParkingAlarm.NONE
+    if refuses and memory.search.rejected == Reason.SLOT_TOO_SHORT:
+        return ParkingAlarm.SLOT_TOO_SHORT
+    is_shallow = refuses and memory.search.rejected == Reason.SLOT_TOO_SHALLOW
+    return ParkingAlarm.SLOT_TOO_SHALLOW if is_shallow else ParkingAlarm.NONE
 
 
 def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:

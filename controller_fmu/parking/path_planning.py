@@ -277,13 +277,11 @@ def _with_pose_request(memory: ParkingMemory, inputs: ParkingSystemInput, params
     """Return the memory with the request for a path to a known goal, among the known polygons and what is not there."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    landmarks = memory.perception.local_map.landmarks
-    beside = tuple(
-        away_from_vehicle(
-            Landmark() if is_on_map(item, params.map, params.monitor.unexplained) else item, outline, pose
-        )
-        for item in landmarks
+    landmarks = tuple(
+        Landmark() if is_on_map(item, params.map, params.monitor.unexplained) else item
+        for item in memory.perception.local_map.landmarks
     )
+    beside = tuple(away_from_vehicle(item, outline, pose) for item in landmarks)
     local = obstacle_map(beside, SlotCandidate(), outline, pose, Point(0.0, 0.0), params.mapping)
     if memory.strategy == Strategy.PULL_OUT:
         return _with_plan(memory, local, memory.plan.way_out, inputs, params)
@@ -341,10 +339,8 @@ def _with_plan(
 def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: VehicleOutline) -> tuple[Landmark, ...]:
     """Return the landmarks without those that the outline at ``pose`` touches: the vehicle stands there."""
     return tuple(
-        landmark
-        if landmark.type == LandmarkType.NONE or landmark_distance(landmark, pose, outline) > 0.0
-        else Landmark()
-        for landmark in landmarks
+        Landmark() if item.type != LandmarkType.NONE and landmark_distance(item, pose, outline) <= 0.0 else item
+        for item in landmarks
     )
 
 

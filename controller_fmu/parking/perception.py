@@ -52,7 +52,6 @@ from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.slots.slot_filter import SlotFilter, count_absent, is_slot_corner, predict_slot, update_slot
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress, with_landmarks
 from modelkit.car import car_length
-from modelkit.vocabulary import Pose
 
 YIELD_TIME = 3.0
 """The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
@@ -271,7 +270,7 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     if memory.perception.cycle.is_new:
         search = memory.search
         if inputs.external_slot.kind != SlotKind.NONE:
-            search = _with_external(search, memory, inputs, params)
+            search = _with_external(memory, inputs, params)
         else:
             search = _with_side(search, memory, 1.0, params)
             search = _with_side(search, memory, -1.0, params)
@@ -284,28 +283,32 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 
 
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
-    """Return the search with the slot found on one side (1 left, -1 right), or why the one there is rejected."""
+    """Return the search with the slot on one side (1 left, -1 right) that the vehicle's front has passed, if any.
+
+    If it is rejected, a slot found before that overlaps it is none, either.
+    """
     local_map = memory.perception.local_map
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
-    angled = find_angled_row(local_map.landmarks, rays, local_map.pose, side, params.mapping)
-    row = angled
-    if angled.used == 0:
+    row = find_angled_row(local_map.landmarks, rays, local_map.pose, side, params.mapping)
+    if row.used == 0:
         row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     found = find_slot(row, local_map.landmarks, rays, outline, params.slot, params.mapping)
-    if found.type == SlotType.NONE or not _has_passed(found, local_map.pose, params):
+    corner = row_point(found.row, found.ahead.start, found.ahead.start_front)
+    ahead = point_to_frame(corner.x, corner.y, local_map.pose).x
+    if found.type == SlotType.NONE or ahead >= params.car.wheelbase + params.car.front_overhang:
         return search
     if found.reason != Reason.NONE:
-        return _without_slot(search, found)
+        offered = tuple(SlotCandidate() if is_overlapping(slot, found) else slot for slot in search.offered)
+        return search._replace(offered=offered, rejected=found.reason, missing=found.missing)
     if is_same_gap(found, search.refused):
         return search
     return search._replace(offered=with_offer(search.offered, found))
 
 
-def _with_external(
-    search: SearchProgress, memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams
-) -> SearchProgress:
+def _with_external(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SearchProgress:
     """Return the search with the external slot, once the side sensors have passed it, or why it is rejected."""
+    search = memory.search
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     given = inputs.external_slot
     landmarks = memory.perception.local_map.landmarks
@@ -344,12 +347,6 @@ def _is_meant(slot: SlotCandidate, side: int) -> bool:
     return side == ChosenSide.ANY or (side == ChosenSide.LEFT) == (slot.row.side > 0.0)
 
 
-def _without_slot(search: SearchProgress, found: SlotCandidate) -> SearchProgress:
-    """Return the search after a gap was rejected: a slot found before that overlaps it is none, either."""
-    offered = tuple(SlotCandidate() if is_overlapping(slot, found) else slot for slot in search.offered)
-    return search._replace(offered=offered, rejected=found.reason, missing=found.missing)
-
-
 def is_overlapping(slot: SlotCandidate, found: SlotCandidate) -> bool:
     """Return whether the middle of a slot found before lies in a gap found now, on the same side of the road."""
     if slot.type == SlotType.NONE or slot.row.side != found.row.side:
@@ -368,12 +365,6 @@ def is_same_gap(found: SlotCandidate, refused: SlotCandidate) -> bool:
     p = row_point(refused.row, refused.behind.end, refused.front)
     q = row_point(refused.row, refused.ahead.start, refused.front)
     return planar_distance(a.x, a.y, p.x, p.y) < SAME_GAP and planar_distance(b.x, b.y, q.x, q.y) < SAME_GAP
-
-
-def _has_passed(slot: SlotCandidate, vehicle: Pose, params: ParkingParams) -> bool:
-    """Return whether the front of a vehicle that drives along the row has passed the corner of the gap's far end."""
-    corner = row_point(slot.row, slot.ahead.start, slot.ahead.start_front)
-    return point_to_frame(corner.x, corner.y, vehicle).x < params.car.wheelbase + params.car.front_overhang
 
 
 def search_reason(search: SearchProgress, is_external: bool, params: ParkingParams) -> int:

@@ -140,12 +140,6 @@ def last_range(chain: EchoChain) -> float:
     return chain.echoes[max(chain.used - 1, 0)].range
 
 
-def is_fit_due(chain: EchoChain, reading: Measurement) -> bool:
-    """Return whether a chain with the echo of ``reading`` is to be fitted."""
-    is_echo = reading.status == ReadingStatus.ECHO
-    return is_echo and chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES
-
-
 def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, params: MappingParams) -> ChainUpdate:
     """Return landmarks and chain after a fit; of a chain of two bodies the first is mapped, the second goes on."""
     chain = update.chain

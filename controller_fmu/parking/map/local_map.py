@@ -5,10 +5,10 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.map.chain_update import (
     MIN_ECHOES,
+    REFIT_ECHOES,
     ChainUpdate,
     chain_ending,
     fit_chain,
-    is_fit_due,
     next_chain,
 )
 from controller_fmu.parking.map.echo_chain import EchoChain, Ending
@@ -123,7 +123,7 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         local_map = local_map._replace(landmarks=ended.landmarks)
     chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], measurement, ending)
     local_map = _with_chain(local_map, at, chain)
-    if is_fit_due(local_map.chains[at], measurement):
+    if measurement.status == ReadingStatus.ECHO and chain.used >= max(MIN_ECHOES, chain.fitted + REFIT_ECHOES):
         update = ChainUpdate(local_map.landmarks, local_map.chains[at])
         update = fit_chain(update, measurement, False, params)
         local_map = local_map._replace(landmarks=update.landmarks)

@@ -73,27 +73,23 @@ class SegmentFit(NamedTuple):
 def fit_segment(chain: EchoChain, first: int, last: int, guess: SegmentGuess, variance: float) -> SegmentFit:
     """Return the segment that the echoes ``first`` to ``last`` of a chain came from; ``variance`` [m2] of an echo.
 
-    The guesses of the ends weigh as measurements do.
+    The guesses of direction and ends weigh as measurements do.
     """
     start = guess.start
     end = guess.end
-    initial = guess.line
     first_start = start.along + start.inset
-    segment = initial._replace(start=first_start, end=max(end.along - end.inset, first_start + MIN_EXTENT))
-    heading = initial.heading
+    segment = guess.line._replace(start=first_start, end=max(end.along - end.inset, first_start + MIN_EXTENT))
     normal = NormalEquations()
     for _ in range(MAX_ITERATIONS):
         normal = _normal_equations(chain, first, last, segment, guess, variance)
-        normal = _with_turn_prior(normal, wrap_angle(heading - segment.heading))
-        step = solve(normal, normal.right)
-        segment = _apply_step(segment, step)
+        segment = _apply_step(segment, solve(normal, normal.right))
     return SegmentFit(_with_covariance(segment, normal), normal.chi_square)
 
 
 def _normal_equations(
     chain: EchoChain, first: int, last: int, segment: Landmark, guess: SegmentGuess, variance: float
 ) -> NormalEquations:
-    """Return the normal equations at ``segment``, with the guesses of the ends."""
+    """Return the normal equations at ``segment``, with the guesses of direction and ends."""
     start = guess.start
     end = guess.end
     aa = 1.0 / (start.sigma * start.sigma)
@@ -110,7 +106,11 @@ def _normal_equations(
             dy = echo.y - segment.y
             at = Point(dx * cos + dy * sin, dy * cos - dx * sin)
             normal = _with_echo(normal, at, echo.range, segment, variance)
-    return normal
+    weight = 1.0 / (ASKEW_SIGMA * ASKEW_SIGMA)
+    turn = wrap_angle(guess.line.heading - segment.heading)
+    m = normal.matrix
+    c, q, a, b = normal.right
+    return normal._replace(matrix=(m[0] + 1.0,) + m[1:5] + (m[5] + weight,) + m[6:], right=(c, q + weight * turn, a, b))
 
 
 def _with_echo(
@@ -132,14 +132,6 @@ def _with_echo(
         tuple(normal.right[number] + weight * row[number] * residual for number in range(STATE_COUNT)),
         normal.chi_square + weight * residual * residual,
     )
-
-
-def _with_turn_prior(normal: NormalEquations, turn: float) -> NormalEquations:
-    """Return the equations with the initial direction, ``turn`` [rad] off the present one, as a measurement."""
-    weight = 1.0 / (ASKEW_SIGMA * ASKEW_SIGMA)
-    m = normal.matrix
-    c, q, a, b = normal.right
-    return normal._replace(matrix=(m[0] + 1.0,) + m[1:5] + (m[5] + weight,) + m[6:], right=(c, q + weight * turn, a, b))
 
 
 def solve(normal: NormalEquations, right: tuple[float, ...]) -> tuple[float, ...]:

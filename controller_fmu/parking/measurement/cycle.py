@@ -7,8 +7,6 @@ from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 
 MAX_TRANSPORT_DELAY = 0.01
 """Readings arrive at most this long [s] after their cycle ended: one communication step of the co-simulation."""
-SECONDS_PER_NANOSECOND = 1e-9
-"""[s]"""
 
 
 class MeasurementCycle(NamedTuple):
@@ -40,4 +38,4 @@ def next_cycle(
 
 def seconds(time_ns: int) -> float:
     """Return ``time_ns`` [ns] in seconds."""
-    return time_ns * SECONDS_PER_NANOSECOND
+    return time_ns * 1e-9

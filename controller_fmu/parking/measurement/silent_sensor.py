@@ -41,7 +41,7 @@ def is_silent(missed: MissedEchoes, sensor: int) -> bool:
 
 def has_blind_side(missed: MissedEchoes) -> bool:
     """Return whether two sensors beside each other on a bumper or a flank are silent: no other covers their cones."""
-    for number in range(MAX_SENSORS - 1):
-        if is_on_one_side(number, number + 1) and is_silent(missed, number) and is_silent(missed, number + 1):
-            return True
-    return False
+    return any(
+        is_on_one_side(number, number + 1) and is_silent(missed, number) and is_silent(missed, number + 1)
+        for number in range(MAX_SENSORS - 1)
+    )

@@ -34,7 +34,9 @@ def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: S
 
 
 def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: VehicleOutline) -> bool:
-    """List the edges near each cell; returns whether the list has room for all."""
+    """List the edges near each cell; returns whether edges and lists have room for all."""
+    if edges > len(work.edge_x1):
+        return False
     cells = region.edge_grid.row_cells * region.edge_grid.row_cells
     for cell in range(cells + 1):
         work.cell_start[cell] = 0

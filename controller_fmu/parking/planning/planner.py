@@ -225,9 +225,6 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     region = search_region(request)
     edges = add_edges(work, request.goal, region)
     work.counts[PlanCount.EDGE_COUNT] = edges
-    if edges > len(work.edge_x1):
-        _finish(work, PlanningStatus.TOO_MANY_EDGES)
-        return
     fits = index_edges(work, edges, region, request.car)
     if not fits:
         _finish(work, PlanningStatus.TOO_MANY_EDGES)

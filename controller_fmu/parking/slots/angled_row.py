@@ -266,19 +266,12 @@ def _line_through(row: SlotRow, line: RoadLine, lean: float) -> RoadLine:
 
 def _next_corner(corners: tuple[RoadCorner, ...], line: RoadLine, last: float) -> float:
     """Return where [m] the next corner on the row's line behind ``last`` is; -``NO_MEMBER``: there is none."""
-    first = -NO_MEMBER
-    for number in range(MAX_CORNERS):
-        if _is_on_line(corners[number], line) and first < corners[number].along < last:
-            first = corners[number].along
-    return first
+    return max(corner.along if _is_on_line(corner, line) and corner.along < last else -NO_MEMBER for corner in corners)
 
 
 def _line_of(corners: tuple[RoadCorner, ...]) -> RoadLine:
     """Return the line through two corners that most others are on, and few before; of a single car along the path."""
-    best = RoadLine(0.0, NO_MEMBER)
-    for number in range(MAX_CORNERS):
-        if corners[number].weight > 0.0:
-            best = best._replace(at=min(best.at, corners[number].deep))
+    best = RoadLine(0.0, min(corner.deep if corner.weight > 0.0 else NO_MEMBER for corner in corners))
     most = 0.0
     for one in range(MAX_CORNERS):
         for other in range(MAX_CORNERS):

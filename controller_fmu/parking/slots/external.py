@@ -98,9 +98,7 @@ def external_pose(given: ExternalSlot, outline: VehicleOutline, vehicle: Pose) -
         depth = 2.0 * (outline.half_width if parallel else outline.half_length)
     x = 0.5 * (given.ax + given.bx + depth * math.cos(given.heading))
     y = 0.5 * (given.ay + given.by + depth * math.sin(given.heading))
-    heading = given.heading
-    if given.kind == SlotKind.TAIL_IN:
-        heading = given.heading + PI
+    heading = given.heading + (PI if given.kind == SlotKind.TAIL_IN else 0.0)
     if parallel:
         heading = math.atan2(given.by - given.ay, given.bx - given.ax)
         if math.cos(heading - vehicle.heading) < 0.0:

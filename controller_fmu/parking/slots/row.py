@@ -173,10 +173,7 @@ def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: 
         else side_as_member(landmarks[number], frame, side, params)
         for number in range(MAX_LANDMARKS)
     )
-    nearest = NO_MEMBER
-    for member in sides:
-        if member.end > member.start:
-            nearest = min(nearest, member.front)
+    nearest = min(member.front if member.end > member.start else NO_MEMBER for member in sides)
     last = NO_MEMBER
     for _ in range(MAX_LANDMARKS):
         best = RowMember(end=-NO_MEMBER)

@@ -86,19 +86,16 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
     ahead = slot.ahead.start_sigma * slot.ahead.start_sigma + front
     cos = math.cos(slot.row.frame.heading)
     sin = math.sin(slot.row.frame.heading)
-    variances = (
-        behind * cos * cos + front * sin * sin,
-        behind * sin * sin + front * cos * cos,
-        _heading_variance(slot.behind, slot.behind.end_length),
-        ahead * cos * cos + front * sin * sin,
-        ahead * sin * sin + front * cos * cos,
-        _heading_variance(slot.ahead, slot.ahead.start_length),
-        END_SIGMA * END_SIGMA,
-    )
-    mixed = ((behind - front) * cos * sin, (ahead - front) * cos * sin)
-    covariance = tuple(
-        _initial_covariance(number // STATE_COUNT, number % STATE_COUNT, variances, mixed)
-        for number in range(STATE_COUNT * STATE_COUNT)
+    behind_xy = (behind - front) * cos * sin
+    ahead_xy = (ahead - front) * cos * sin
+    covariance = (
+        (behind * cos * cos + front * sin * sin, behind_xy, 0.0, 0.0, 0.0, 0.0, 0.0)
+        + (behind_xy, behind * sin * sin + front * cos * cos, 0.0, 0.0, 0.0, 0.0, 0.0)
+        + (0.0, 0.0, _heading_variance(slot.behind, slot.behind.end_length), 0.0, 0.0, 0.0, 0.0)
+        + (0.0, 0.0, 0.0, ahead * cos * cos + front * sin * sin, ahead_xy, 0.0, 0.0)
+        + (0.0, 0.0, 0.0, ahead_xy, ahead * sin * sin + front * cos * cos, 0.0, 0.0)
+        + (0.0, 0.0, 0.0, 0.0, 0.0, _heading_variance(slot.ahead, slot.ahead.start_length), 0.0)
+        + (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, END_SIGMA * END_SIGMA)
     )
     return SlotFilter(state, covariance, into_x, into_y, True)
 
@@ -126,14 +123,6 @@ def _front_variance(member: RowMember, side_length: float) -> float:
         return FRONT_SIGMA * FRONT_SIGMA
     length = max(member.end - member.start, FRONT_SIGMA)
     return 2.0 * FRONT_SIGMA * FRONT_SIGMA / (length * length)
-
-
-def _initial_covariance(row: int, column: int, variances: tuple[float, ...], mixed: tuple[float, float]) -> float:
-    if row == column:
-        return variances[row]
-    if min(row, column) == 0 and max(row, column) == 1:
-        return mixed[0]
-    return mixed[1] if min(row, column) == AHEAD_OFFSET and max(row, column) == AHEAD_OFFSET + 1 else 0.0
 
 
 def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params: MappingParams) -> SlotFilter:
@@ -262,9 +251,8 @@ def _range_to_end(slot_filter: SlotFilter, sensor: SensorPose) -> PredictedRange
     a = state[END_INDEX] - (state[0] * nx + state[1] * ny)
     b = state[END_INDEX] - (state[AHEAD_OFFSET] * nx + state[AHEAD_OFFSET + 1] * ny)
     start = Point(state[0] + a * nx, state[1] + a * ny)
-    return predict_range_to_segment(
-        sensor, start, Point(state[AHEAD_OFFSET] + b * nx, state[AHEAD_OFFSET + 1] + b * ny)
-    )
+    end = Point(state[AHEAD_OFFSET] + b * nx, state[AHEAD_OFFSET + 1] + b * ny)
+    return predict_range_to_segment(sensor, start, end)
 
 
 def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filter: SlotFilter, at: int) -> SlotEcho:
@@ -275,17 +263,14 @@ def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filt
     is_end = at == END_INDEX
     is_known = new.origin == EchoOrigin.INTERIOR or (new.origin == EchoOrigin.START and not is_end)
     turn = u.y * (new.x - slot_filter.state[at]) - u.x * (new.y - slot_filter.state[at + 1]) if not is_end else 0.0
-    deep = u.x * slot_filter.into_x + u.y * slot_filter.into_y
-    gradient = tuple(
-        _derivative(number - at, u, turn) if not is_end else (deep if number == END_INDEX else 0.0)
-        for number in range(STATE_COUNT)
-    )
+    first = u.x * slot_filter.into_x + u.y * slot_filter.into_y if is_end else u.x
+    gradient = tuple(_derivative(number - at, first, u.y, turn) for number in range(STATE_COUNT))
     return SlotEcho(new, gradient, is_known)
 
 
-def _derivative(state: int, u: Point, turn: float) -> float:
-    """Return the derivative of a range by a neighbour's x (0), y (1) and heading (2)."""
-    return u.x if state == 0 else (u.y if state == 1 else (turn if state == 2 else 0.0))
+def _derivative(state: int, x: float, y: float, turn: float) -> float:
+    """Return the derivative of a range by a neighbour's x (0, or by the end), y (1) and heading (2)."""
+    return x if state == 0 else (y if state == 1 else (turn if state == 2 else 0.0))
 
 
 def is_slot_corner(slot_filter: SlotFilter, point: Point) -> bool:

@@ -293,7 +293,7 @@ def gap_depth(
 
 
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
-    """Return whether the gap behind the fronts has been observed free, as deep as it is; less of it if an edge is known.
+    """Return whether the gap behind the fronts has been observed free, as deep as it is; less if an edge is known.
 
     Two edges alone show no gap: a pedestrian before a wall hides as much of it, and its echoes end there.
     """

@@ -85,11 +85,12 @@ def goes_on(said: str) -> bool:
 
 @contextlib.contextmanager
 def alarm(seconds: float, goes_on: Callable[[], bool] = lambda: False) -> Iterator[None]:
-    """Raise ``Hangs`` in what takes longer, as ``FairTime`` counts, or ``GoesOn`` where ``goes_on`` is true."""
+    """Raise ``Hangs`` once in what takes longer, as ``FairTime`` counts, or ``GoesOn`` where ``goes_on`` is true."""
     taken = FairTime(os.getpid())
 
     def look(*_: object) -> None:
         if taken.seconds() > seconds:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
             raise GoesOn if goes_on() else Hangs
 
     before = signal.signal(signal.SIGALRM, look)

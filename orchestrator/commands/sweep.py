@@ -4,6 +4,7 @@ import argparse
 import importlib
 import inspect
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ from orchestrator.simulation.cosim.kinds import KINDS
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
+    from orchestrator.studies.sweep.study.space import Factor
     from orchestrator.studies.sweep.study.study import Study
     from orchestrator.studies.sweep.sweep import Swept
 
@@ -30,6 +32,7 @@ EXAMPLES = """examples:
   apa sweep my-study.yaml --fmus native        the same table from FMUs, slower
   apa sweep my-study.yaml --dask               on a Dask cluster on this machine
   apa sweep my-study.yaml --dask tcp://10.0.0.5:8786
+  apa sweep parking-world --set mild=1 --set overhang=hitch --set kind=parallel --runs 150
   apa sweep guo2015-speed-rate --explain       parts of the models that the compiled study omits
   apa replay runs/my-study/my-study.parquet --row 17
 
@@ -65,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="KEY=VALUE",
-        help="as in apa run, for all runs; also the seed and the arguments of the study",
+        help="as in apa run, for all runs; also the seed, the arguments and the factors of the study",
     )
     parser.add_argument("--runs", type=int, metavar="N", help="number of samples of the study")
     parser.add_argument("--seed", type=int, metavar="S", help="random seed of the study")
@@ -158,20 +161,47 @@ def select_study(name: str, sets: list[str]) -> "Study":
         raise BadInput(f"{format_value(sets)}: expected KEY=VALUE", file="--set")
     if name not in STUDIES:
         return read_study(name, pairs, STUDIES)
-    made: Study = importlib.import_module(STUDIES[name]).study(**_whole(name, pairs))
+    made: Study = importlib.import_module(STUDIES[name]).study(**_study_arguments(name, pairs))
     return made
 
 
-def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
-    """Return the arguments of a study that a function makes: whole numbers that its signature names."""
-    known = inspect.signature(importlib.import_module(STUDIES[name]).study).parameters
-    for key, value in pairs.items():
-        if key not in known:
-            hint = suggestion_or_choices(key, known)
+def _study_arguments(name: str, pairs: dict[str, str]) -> dict[str, float]:
+    """Return the arguments of a study that a function makes: those that its signature names, and values of factors."""
+    module = importlib.import_module(STUDIES[name])
+    parameters = inspect.signature(module.study).parameters
+    named = [key for key, item in parameters.items() if item.kind is not inspect.Parameter.VAR_KEYWORD]
+    factors = {factor.name: factor for factor in module.FACTORS} if len(named) < len(parameters) else {}
+    for key in pairs:
+        if key not in named and key not in factors:
+            hint = suggestion_or_choices(key, [*named, *factors])
             raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
-        if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
-            raise BadInput(f"{format_value(value)} is not a whole number of at least 0", file="--set", key=key)
-    return {key: int(value) for key, value in pairs.items()}
+    return {
+        key: _value_of_factor(factors[key], value) if key in factors else _whole(key, value)
+        for key, value in pairs.items()
+    }
+
+
+def _whole(key: str, value: str) -> int:
+    if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
+        raise BadInput(f"{format_value(value)} is not a whole number of at least 0", file="--set", key=key)
+    return int(value)
+
+
+def _value_of_factor(factor: "Factor", text: str) -> float:
+    """Return the value that a text means: one of the range of a factor, or the number of one of its choices."""
+    if factor.choices and text in factor.choices:
+        return float(factor.choices.index(text))
+    high = len(factor.choices) - 1.0 if factor.choices else factor.high
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not factor.low <= value <= high or (factor.choices and value != math.floor(value)):
+        choices = f", one of {', '.join(factor.choices)}" if factor.choices else f" {factor.unit}"
+        raise BadInput(
+            f"{format_value(text)}: expected {factor.low:g} to {high:g}{choices}", file="--set", key=factor.name
+        )
+    return value
 
 
 def _report(name: str, table: Path, *, quiet: bool) -> int:

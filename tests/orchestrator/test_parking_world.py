@@ -215,3 +215,24 @@ def test_a_wheel_stop_that_is_detected_under_the_tail_leaves_no_slot() -> None:
     f |= {"depth": np.array([0.1, 0.1, 1.5, 0.1])}
     found = parameters(f, np.arange(1, 5))
     assert is_valid(f | found).tolist() == [False, True, True, True]
+
+
+def test_factors_may_have_one_value_in_all_runs() -> None:
+    from orchestrator.commands.sweep import select_study
+    from orchestrator.inputs.text.errors import BadInput
+
+    sets = ["runs=40", "mild=1", "kind=perpendicular", "bays=4", "bay=2.3", "overhang=hitch"]
+    values = select_study("parking-world", sets).design.labels
+    assert {name: set(values[name]) for name in ("kind", "bays", "overhang")} == {
+        "kind": {1.0},
+        "bays": {4.0},
+        "overhang": {float(HITCH)},
+    }
+    assert values["bay"] == pytest.approx(np.full(40, 2.3))
+    assert np.abs(values["heading"]).max() <= 4.0
+    assert len(set(values["extra"])) == 40
+    for wrong in ("bay=2.2", "bay=wide", "kind=angled", "kind=0.5", "bays=6", "bay=nan"):
+        with pytest.raises(BadInput, match="expected"):
+            select_study("parking-world", [wrong])
+    with pytest.raises(BadInput, match="no such key; did you mean bay"):
+        select_study("parking-world", ["bey=2.5"])

@@ -41,10 +41,13 @@ KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
 """GB/T 41630, between tyres and kerb [m]."""
 
 
-def study(runs: int = 2000, seed: int = 1) -> Study:
-    """Return the study: ``runs`` rows drawn from ``seed``."""
-    space = Space(FACTORS, _stack)
-    shares = np.random.default_rng([seed, 2]).random((runs, len(FACTORS)))
+def study(runs: int = 2000, seed: int = 1, mild: int = 0, **fixed: float) -> Study:
+    """Return the study: ``runs`` rows drawn from ``seed``.
+
+    ``mild``: 1 for half the ranges; ``fixed``: factors that have one value in all runs.
+    """
+    space = Space([factor.mild() for factor in FACTORS] if mild else FACTORS, _stack)
+    shares = space.with_fixed(np.random.default_rng([seed, 2]).random((runs, len(FACTORS))), fixed)
     seeds = np.random.default_rng([seed, 3]).integers(1, 2**31 - 1, size=runs)
     shared = scenario()
     content = {
@@ -53,6 +56,8 @@ def study(runs: int = 2000, seed: int = 1) -> Study:
         "description": "Parked: within GB/T 41630 of a slot by ISO 16787, no contact.",
         "map": {"x": "extra", "y": "cars_a", "split": "kind"},
         "seed": seed,
+        "mild": mild,
+        **({"fixed": fixed} if fixed else {}),
     }
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     within = {GBT[kind]: world.limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}

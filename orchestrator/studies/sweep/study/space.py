@@ -59,6 +59,14 @@ class Space(NamedTuple):
         """Return the values of the factors at points of the unit cube, by name."""
         return {factor.name: factor.at(column) for factor, column in zip(self.factors, shares.T, strict=True)}
 
+    def with_fixed(self, shares: Array, values: Mapping[str, float]) -> Array:
+        """Return points (n, factors) of the unit cube at which the factors named have the ``values``."""
+        places = {factor.name: place for place, factor in enumerate(self.factors)}
+        fixed = shares.copy()
+        for name, value in values.items():
+            fixed[:, places[name]] = self.factors[places[name]].share(value)
+        return fixed
+
     def nominal(self) -> Array:
         """Return the point of the unit cube at which nothing is disturbed."""
         return np.array([factor.share(factor.nominal) for factor in self.factors])

@@ -207,16 +207,16 @@ FREE_RAYS = tuple(Ray(SensorPose(-4.0 + 0.1 * n, 0.5, 0.0, -1.0, COS, SIN), 5.0)
 """Of a sensor on the road that measured nothing nearer than 5 m."""
 
 
-def test_two_edges_show_no_gap_that_was_not_observed_free() -> None:
+@pytest.mark.parametrize(("front", "rays", "is_gap"), [(3.0, (), False), (3.0, FREE_RAYS, True), (2.8, (), True)])
+def test_from_afar_two_edges_show_no_gap_that_was_not_observed_free(
+    front: float, rays: tuple[Ray, ...], is_gap: bool
+) -> None:
     """A pedestrian hides as much of a wall: the echoes of the wall end where they begin again behind the pedestrian."""
-    row = SlotRow(
-        side=-1.0, members=(RowMember(2.7, 8.0, 0.0, True), RowMember(-9.0, 0.0, 0.0, end_known=True)), used=2
-    )
-    row = row._replace(members=row.members + (RowMember(),) * (MAX_MEMBERS - 2))
-    nothing = (Landmark(),) * MAX_LANDMARKS
-    for rays, is_gap in ((FreeSpace().right, False), (FREE_RAYS, True)):
-        found = find_slot(row, nothing, rays, OUTLINE, SlotParams(), MappingParams())
-        assert (found.type != SlotType.NONE) == is_gap
+    ends = [RowMember(2.7, 8.0, front, True, False, front), RowMember(-9.0, 0.0, front, False, True, front, front)]
+    row = SlotRow(side=-1.0, members=(*ends, *(RowMember(),) * (MAX_MEMBERS - 2)), used=2)
+    rays = rays or FreeSpace().right
+    found = find_slot(row, (Landmark(),) * MAX_LANDMARKS, rays, OUTLINE, SlotParams(), MappingParams())
+    assert (found.type != SlotType.NONE) == is_gap
 
 
 def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:

@@ -61,6 +61,8 @@ FREE_DEPTHS = (0.4, 1.0, 1.6)
 FREE_FRACTIONS = (0.4, 0.5, 0.6)
 MIN_FREE = 4
 """Of the points so deep [m] and at these fractions of the gap, so many must have been observed free."""
+NEAR_FRONT = 2.9
+"""Up to so far [m] from the vehicle's axis, 2 m from its side, the echoes of a gap between cars show its edges."""
 
 
 class SlotType(IntEnum):
@@ -295,7 +297,8 @@ def gap_depth(
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
     """Return whether the gap behind the fronts has been observed free, as deep as it is; less if an edge is known.
 
-    Two edges alone show no gap: a pedestrian before a wall hides as much of it, and its echoes end there.
+    Of a gap between two edges nearby the echoes of these may hide all. From afar two edges alone show none: a
+    pedestrian before a wall hides as much of it.
     """
     count = 0
     for deep in FREE_DEPTHS:
@@ -304,8 +307,9 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
             point = row_point(candidate.row, x, candidate.front + min(deep, 0.5 * candidate.depth))
             if is_free(rays, point.x, point.y):
                 count += 1
-    has_edge = candidate.behind.end_known or candidate.ahead.start_known
-    return count >= MIN_FREE or (has_edge and count >= MIN_FREE - 1)
+    edges = (1 if candidate.behind.end_known else 0) + (1 if candidate.ahead.start_known else 0)
+    has_both = edges == 2 and (count > 0 or candidate.front < NEAR_FRONT)
+    return has_both or count >= MIN_FREE or (edges > 0 and count >= MIN_FREE - 1)
 
 
 def row_point(row: SlotRow, along: float, deep: float) -> Point:

@@ -108,7 +108,7 @@ def find_angled_row(
 ) -> SlotRow:
     """Return the angled row on one side (1 left, -1 right) of a vehicle that drives along it; empty: there is none."""
     corners = _corners(landmarks, vehicle, side, params)
-    line = _line_of(corners)
+    line = _line_of(corners, side)
     sides = _side_heading(corners, line)
     road = side * math.atan(line.slope)
     if abs(_square_angle(sides - road)) < MAX_TILT:
@@ -269,7 +269,7 @@ def _next_corner(corners: tuple[RoadCorner, ...], line: RoadLine, last: float) -
     return max(corner.along if _is_on_line(corner, line) and corner.along < last else -NO_MEMBER for corner in corners)
 
 
-def _line_of(corners: tuple[RoadCorner, ...]) -> RoadLine:
+def _line_of(corners: tuple[RoadCorner, ...], side: float) -> RoadLine:
     """Return the line through two corners that most others are on, and few before; of a single car along the path."""
     best = RoadLine(0.0, min(corner.deep if corner.weight > 0.0 else NO_MEMBER for corner in corners))
     most = 0.0
@@ -283,17 +283,21 @@ def _line_of(corners: tuple[RoadCorner, ...]) -> RoadLine:
                 if abs(math.atan(slope)) < MAX_TILT:
                     score = 0.0
                     for number in range(MAX_CORNERS):
-                        score += _line_score(corners[number], line)
+                        score += _line_score(corners[number], line, side)
                     if score > most:
                         most = score
                         best = line
     return best
 
 
-def _line_score(corner: RoadCorner, line: RoadLine) -> float:
-    """Return how much a corner speaks for a line, or against one that it stands before."""
+def _line_score(corner: RoadCorner, line: RoadLine, side: float) -> float:
+    """Return how much a corner speaks for a line, and the other end of its side too; one before the line against it."""
     off = _off_line(corner, line)
-    return -corner.weight if off < -LINE_DEPTH else corner.weight * max(1.0 - abs(off) / LINE_DEPTH, 0.0)
+    if off < -LINE_DEPTH:
+        return -corner.weight
+    near = 1.0 - abs(off) / LINE_DEPTH
+    far = near - corner.length * abs(math.sin(corner.heading - side * math.atan(line.slope))) / LINE_DEPTH
+    return corner.weight * (max(near, 0.0) + max(far, 0.0))
 
 
 def _off_line(corner: RoadCorner, line: RoadLine) -> float:

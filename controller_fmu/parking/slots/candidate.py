@@ -297,8 +297,7 @@ def gap_depth(
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
     """Return whether the gap behind the fronts has been observed free, as deep as it is; less if an edge is known.
 
-    Of a gap between two edges nearby the echoes of these may hide all. From afar two edges alone show none: a
-    pedestrian before a wall hides as much of it.
+    Echoes of two edges nearby may hide all of a gap. From afar they show none: a pedestrian before a wall hides it so.
     """
     count = 0
     for deep in FREE_DEPTHS:
@@ -308,8 +307,7 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
             if is_free(rays, point.x, point.y):
                 count += 1
     edges = (1 if candidate.behind.end_known else 0) + (1 if candidate.ahead.start_known else 0)
-    has_both = edges == 2 and (count > 0 or candidate.front < NEAR_FRONT)
-    return has_both or count >= MIN_FREE or (edges > 0 and count >= MIN_FREE - 1)
+    return count >= MIN_FREE - edges or (edges == 2 and (count > 0 or candidate.front < NEAR_FRONT))
 
 
 def row_point(row: SlotRow, along: float, deep: float) -> Point:

@@ -113,8 +113,7 @@ def _car_width(member: RowMember) -> float:
 
     What hides both of its corners, such as a rack with bicycles, stands in its middle; a shorter side is a part of it.
     """
-    is_one_car = _is_of_cars(member) and bays_within(member) == 0
-    return member.end - member.start if is_one_car else CAR_WIDTH
+    return member.end - member.start if _is_of_cars(member) and bays_within(member) == 0 else CAR_WIDTH
 
 
 def _is_of_cars(member: RowMember) -> bool:

@@ -32,8 +32,7 @@ class FreeSpace(NamedTuple):
 
 def is_next_ray(last: Ray, ray: Ray) -> bool:
     """Return whether a ray is kept after the ``last`` one of its side: its sensor has moved far enough."""
-    moved = planar_distance(ray.sensor.x, ray.sensor.y, last.sensor.x, last.sensor.y)
-    return last.range <= 0.0 or moved >= RAY_SPACING
+    return last.range <= 0.0 or planar_distance(ray.sensor.x, ray.sensor.y, last.sensor.x, last.sensor.y) >= RAY_SPACING
 
 
 def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:

@@ -124,7 +124,8 @@ def monitor_collision(
             if is_confirmed(landmark, mapping):
                 a = start_point(landmark)
                 by_map = min(by_map, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
-        by_map = min(by_map, min(free_by_echo(motion, sweep, echo, False, params) for echo in echoes))
+        by_echoes = min(free_by_echo(motion, sweep, echo, False, params) for echo in echoes)
+        by_map = min(by_map, by_echoes)
         free = min(by_map, min(free_by_echo(motion, sweep, echo, True, params) for echo in echoes))
     slowing = SLOWING_FRACTION * motion.deceleration
     limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, slowing)

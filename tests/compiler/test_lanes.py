@@ -10,13 +10,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from pycparser import c_parser
 
 import tests.compiler.test_lanes as here
 from fmus.compiled_batch import RecordedSignal, compile_rows
 from fmus.compiler.lanes import NoLanesError
-from fmus.compiler.lanes.costs import Costs
-from fmus.compiler.lanes.reading import Declarations
 from fmus.compiler.slicing import Slice
 from fmus.lane_rows import compile_lane_rows, has_lanes
 from fmus.native import tangents
@@ -181,7 +178,6 @@ class Outputs(NamedTuple):
 TABLE = (0.5, -0.25, 4.0)
 SMALL_TABLE = (3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8, 9, 7, 9, 3)
 LARGE_TABLE = (2.0, 7.0, 1.0, 8.0, 2.5, 8.5, 1.5, 8.25, 4.0, 5.0, 9.0, 0.5, 4.5, 5.5, 2.25, 3.5, 3.0)
-"""More numbers than two vectors have room for."""
 
 
 def first_above(row: tuple[Cell, ...], limit: float) -> int:
@@ -255,18 +251,6 @@ def test_branches_loops_and_places_that_differ_between_lanes(options: Any) -> No
     parameters = np.column_stack([random.normal(size=RUNS), random.integers(0, 7, RUNS), random.integers(0, 2, RUNS)])
     load_lanes(model, all_of(model), options)
     assert differing(model, parameters.astype(np.float64), times_of(RUNS), options) == []
-
-
-def test_a_branch_that_costs_little_is_not_tested() -> None:
-    parser = c_parser.CParser()
-    text = "double cheap(double x) {{ if (x < 0.0) {{ return -x; }} return x; }} double f(double x) {{ return {}; }}"
-    costs = []
-    for expression in ("cheap(x)", "2.0 * x + 1.0", "x / 2.0", "sin(x)", "cheap(sin(x))"):
-        file = Declarations("", text.format(expression), "Outputs", frozenset())
-        costs.append(Costs(file).is_small(file.functions["f"].body))
-    loop = parser.parse("void f(void) { for (int i = 0; i < 2; ++i) { g = 1; } }").ext[0].body
-    assert costs == [True, True, False, False, False]
-    assert not Costs(file).is_small(loop)
 
 
 MATHS = """

@@ -5,7 +5,6 @@ from typing import Any, NamedTuple
 
 from pycparser import c_ast
 
-from fmus.compiler.lanes.costs import Costs
 from fmus.compiler.lanes.kinds import (
     BOOL,
     DOUBLE,
@@ -32,8 +31,6 @@ COMPARISONS = {"<", ">", "<=", ">=", "==", "!="}
 CHEAP = {"sqrt", "fabs", "floor", "ceil", "trunc", "rint", "copysign", "fmod"}
 """Functions of C's library that are worked out in all lanes; the others only in those that need them."""
 TESTS = {"isnan", "isinf", "isfinite"}
-MAX_TABLE_ITEMS = 16
-"""``LANE_ITEMS`` of ``lanes.h``."""
 HELPERS: dict[str, tuple[Number, ...]] = {
     "int_of": (INT, DOUBLE),
     "floor_div": (INT, INT, INT),
@@ -71,9 +68,8 @@ class LanePlace(NamedTuple):
 class Expressions:
     """Writes expressions of one function."""
 
-    def __init__(self, file: Declarations, needed: set[str], calls: list[int], costs: Costs) -> None:
+    def __init__(self, file: Declarations, needed: set[str], calls: list[int]) -> None:
         self.file, self.needed, self.calls = file, needed, calls
-        self.costs = costs
         self.turns: dict[str, str] = {}
         """Arguments of which sine and cosine are known -> the call that knows them."""
         self.variables: dict[str, LaneVariable] = {}
@@ -169,9 +165,6 @@ class Expressions:
         return LaneValue(f"{value.text}{node.type}{node.field.name}", self.file.field(kind, node.field.name))
 
     def _item(self, node: Any) -> LaneValue:
-        item = self._item_of_small_table(node)
-        if item is not None:
-            return item
         place = self.place(node)
         if place is not None:
             return self._gather(place)
@@ -180,18 +173,6 @@ class Expressions:
         if not isinstance(kind, LaneArray | Pointer):
             raise NoLanesError(f"an item of {kind}")
         return LaneValue(f"{value.text}[{index.text}]", kind.item if isinstance(kind, LaneArray) else kind.to)
-
-    def _item_of_small_table(self, node: Any) -> LaneValue | None:
-        """Return an item, at an index that differs between lanes, of a table that vectors have room for."""
-        name = node.name.name if isinstance(node.name, c_ast.ID) else ""
-        table = None if name in self.variables else self.file.constants.get(name)
-        if not isinstance(table, LaneArray) or not isinstance(table.item, Number) or table.length > MAX_TABLE_ITEMS:
-            return None
-        index = self.value(node.subscript)
-        if not isinstance(index.kind, Number) or index.kind.is_shared or table.item.name == "bool":
-            return None
-        text = f"lane_item_{table.item.name[0]}({name}, {table.length}, {convert(index, INT)})"
-        return LaneValue(text, own(table.item))
 
     def place(self, node: Any) -> LanePlace | None:
         """Return the place of an item whose index differs between lanes; None if none in its path does."""
@@ -254,6 +235,13 @@ class Expressions:
             return LaneValue(f"(&{value.text})", Pointer(value.kind))
         raise NoLanesError(f"the address of {place.text}")
 
+    def has_call(self, node: Any) -> bool:
+        """Return whether a function is called that takes some time."""
+        if isinstance(node, c_ast.FuncCall):
+            name = node.name.name
+            return name not in HELPERS and name not in CHEAP and name not in TESTS
+        return any(self.has_call(child) for _, child in node.children())
+
     def under(self, condition: str, node: Any, wanted: Number) -> str:
         """Return an expression worked out where ``condition`` holds."""
         before, self.mask = self.mask, f"({self.mask} & {condition})"
@@ -287,7 +275,7 @@ class Expressions:
         if is_shared:
             return LaneValue(f"({left.text} {node.op} {right.text})", SHARED_BOOL)
         first = convert(left, BOOL)
-        if self.costs.is_small(node.right):
+        if not self.has_call(node.right):
             return LaneValue(f"({first} {node.op[0]} {convert(right, BOOL)})", BOOL)
         condition = "a" if node.op == "&&" else "~a"
         name = self._fresh("a")
@@ -319,7 +307,7 @@ class Expressions:
                 return LaneValue(f"({condition.text} ? {one.text} : {other.text})", Number(common.name, True))
             return LaneValue(f"({condition.text} ? {convert(one, common)} : {convert(other, common)})", common)
         pick, where = f"lane_pick_{common.name[0]}", convert(condition, BOOL)
-        if self.costs.is_small(node.iftrue) and self.costs.is_small(node.iffalse):
+        if not (self.has_call(node.iftrue) or self.has_call(node.iffalse)):
             return LaneValue(f"{pick}({where}, {convert(one, common)}, {convert(other, common)})", common)
         name, result = self._fresh("c"), self._fresh("r")
         first, second = self.under(name, node.iftrue, common), self.under(f"~{name}", node.iffalse, common)

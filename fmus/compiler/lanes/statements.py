@@ -6,7 +6,6 @@ from typing import Any
 
 from pycparser import c_ast
 
-from fmus.compiler.lanes.costs import MAX_UNTESTED_COST, Costs
 from fmus.compiler.lanes.expressions import Expressions, LaneVariable
 from fmus.compiler.lanes.kinds import (
     BOOL,
@@ -35,13 +34,10 @@ ANYTHING = "*"
 class Function:
     """Writes one function."""
 
-    def __init__(self, file: Declarations, needed: set[str], calls: list[int], costs: Costs, node: Any) -> None:
+    def __init__(self, file: Declarations, needed: set[str], calls: list[int], node: Any) -> None:
         self.file, self.needed, self.node = file, needed, node
         self.result, self.params = file.signatures[node.decl.name]
-        self.write = Expressions(file, needed, calls, costs)
-        self.costs = costs
-        self.rests: list[int] = []
-        """What is still to be worked out, for each block around the present statement."""
+        self.write = Expressions(file, needed, calls)
         self.write.variables = {name: LaneVariable(kind, -1) for name, kind in self.params}
         self.lines: list[str] = []
         self.level, self.levels, self.count, self.depth = 0, 0, 0, 1
@@ -81,12 +77,9 @@ class Function:
     def _block(self, items: list[Any]) -> None:
         known = dict(self.write.variables)
         self.next_turns = {}
-        self.rests.append(sum(map(self.costs.of, items)))
         for item, after in zip_longest(items, items[1:]):
-            self.rests[-1] -= self.costs.of(item)
             self._turn(item, after)
             self._statement(item)
-        self.rests.pop()
         self.write.variables, self.next_turns = known, {}
 
     def _turn(self, item: Any, after: Any) -> None:
@@ -297,7 +290,7 @@ class Function:
                 continue
             inner = self._fresh("at")
             self._line(f"lane_i {inner} = {outer} & {where};")
-            self._line("{" if self.costs.is_small(part) else f"if (lane_any({inner})) {{")
+            self._line(f"if (lane_any({inner})) {{")
             self.level = self._next_level()
             self._use(inner)
             self._inner(part)
@@ -324,9 +317,8 @@ class Function:
 
     def _narrow_returned(self) -> None:
         self._line(f"{self.mask} &= ~lane_gone;")
-        if sum(self.rests) > MAX_UNTESTED_COST:
-            value = "" if isinstance(self.result, Void) else " lane_returned"
-            self._line(f"if (!lane_any(live & ~lane_gone)) return{value};")
+        value = "" if isinstance(self.result, Void) else " lane_returned"
+        self._line(f"if (!lane_any(live & ~lane_gone)) return{value};")
 
     def _leave(self, loop: str) -> None:
         self._line(f"{loop} &= ~{self.mask};")

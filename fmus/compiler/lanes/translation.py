@@ -1,6 +1,5 @@
 """From the translator's C to the same model in lanes."""
 
-from fmus.compiler.lanes.costs import Costs
 from fmus.compiler.lanes.expressions import HELPERS, Expressions
 from fmus.compiler.lanes.kinds import INT, Kind, LaneArray, LaneStruct, Number, declaration, type_name
 from fmus.compiler.lanes.reading import Declarations, is_table
@@ -23,10 +22,7 @@ def lanes_of(code: Translation, outputs: str, live: Slice) -> str:
     file = Declarations(code.header, code.source, outputs, live_fields)
     needed: set[str] = set()
     calls: list[int] = []
-    costs = Costs(file)
-    functions = [
-        line for node in file.functions.values() for line in ["", *Function(file, needed, calls, costs, node).text()]
-    ]
+    functions = [line for node in file.functions.values() for line in ["", *Function(file, needed, calls, node).text()]]
     constants = _constants(file)
     lines = [
         f"/* {code.name} in lanes. */",
@@ -51,7 +47,7 @@ def lanes_of(code: Translation, outputs: str, live: Slice) -> str:
 
 
 def _constants(file: Declarations) -> list[str]:
-    write = Expressions(file, set(), [], Costs(file))
+    write = Expressions(file, set(), [])
     lines = []
     for name, kind in file.constants.items():
         if not is_table(kind):

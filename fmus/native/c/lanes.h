@@ -86,32 +86,6 @@ static inline lane_i lane_isnan(lane_d x) { return x != x; }
 static inline lane_i lane_isfinite(lane_d x) { return x - x == 0.0; }
 static inline lane_i lane_isinf(lane_d x) { return (x == x) & ~lane_isfinite(x); }
 
-#define LANE_ITEMS 16 /* of a table that lane_item_i and lane_item_d take */
-
-#if LANES == 8
-static inline __m512i lane_part(const void *table, int count, int from) {
-    const int left = count - from;
-    const __mmask8 there = left >= LANES ? 0xFF : left > 0 ? (__mmask8)((1 << left) - 1) : 0;
-    return _mm512_maskz_loadu_epi64(there, (const int64_t *)table + from);
-}
-#define LANE_ITEM(letter, type)                                                                                     \
-    static inline lane_##letter lane_item_##letter(const type *table, int count, lane_i index) {                   \
-        return (lane_##letter)_mm512_permutex2var_epi64(lane_part(table, count, 0), (__m512i)index,                 \
-                                                        lane_part(table, count, LANES));                           \
-    }
-#else
-#define LANE_ITEM(letter, type)                                                                    \
-    static inline lane_##letter lane_item_##letter(const type *table, int count, lane_i index) {   \
-        lane_##letter r;                                                                           \
-        const lane_i in = lane_index_in(index, LANE_INT(count));                                   \
-        LANE_EACH(l) r[l] = table[in[l]];                                                          \
-        return r;                                                                                  \
-    }
-#endif
-/* Items of a table of up to LANE_ITEMS numbers; an index that has none means nothing. */
-LANE_ITEM(i, int64_t)
-LANE_ITEM(d, double)
-
 #define LANE_EXACT(name)                              \
     static inline lane_d lane_##name(lane_d x) {      \
         lane_d r;                                     \

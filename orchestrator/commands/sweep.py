@@ -4,7 +4,6 @@ import argparse
 import importlib
 import inspect
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -189,19 +188,19 @@ def _whole(key: str, value: str) -> int:
 
 def _value_of_factor(factor: "Factor", text: str) -> float:
     """Return the value that a text means: one of the range of a factor, or the number of one of its choices."""
-    if factor.choices and text in factor.choices:
+    from modelkit.signal import Signal
+    from modelkit.variables import Variable
+    from orchestrator.inputs.text.quantities import scalar
+
+    if text in factor.choices:
         return float(factor.choices.index(text))
-    high = len(factor.choices) - 1.0 if factor.choices else factor.high
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not factor.low <= value <= high or (factor.choices and value != math.floor(value)):
-        choices = f", one of {', '.join(factor.choices)}" if factor.choices else f" {factor.unit}"
-        raise BadInput(
-            f"{format_value(text)}: expected {factor.low:g} to {high:g}{choices}", file="--set", key=factor.name
-        )
-    return value
+    if not factor.choices:
+        signal = Signal(factor.unit, factor.text, factor.low, factor.high)
+        return float(scalar(text, Variable(factor.name, float, signal, factor.nominal), file="--set"))
+    if not (text.isascii() and text.isdigit() and int(text) < len(factor.choices)):
+        expected = f"expected 0 to {len(factor.choices) - 1}, one of {', '.join(factor.choices)}"
+        raise BadInput(f"{format_value(text)}: {expected}", file="--set", key=factor.name)
+    return float(text)
 
 
 def _report(name: str, table: Path, *, quiet: bool) -> int:

@@ -353,7 +353,7 @@ def set_speed_sweep(_: list[Driven]) -> Figure:
     heading.plot(speeds, np.degrees(errors[:, 1]), color="#b0401a", linestyle="--", label="epsL in curve 4")
     heading.axhline(5.0, **printed)
     axis.set(xlabel="set speed [m/s]", ylabel="largest |yL| [cm]", ylim=(0.0, 4.0))
-    heading.set(ylabel="largest |epsL| in curve 4 [deg], dashed", ylim=(0.0, 16.0))
+    heading.set(ylabel="|epsL| in curve 4 [deg]", ylim=(0.0, 16.0))
     return figure
 
 

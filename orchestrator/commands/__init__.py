@@ -5,7 +5,6 @@ COMMANDS = {
     "build": "build Controller.fmu and Vehicle.fmu",
     "check": "evaluate a run by requirements",
     "compare": "compare two runs",
-    "completion": "print a shell-completion script",
     "export": "write other formats",
     "fmu": "check compatibility of a third-party FMU",
     "falsify": "falsification: search a study's ranges for violations of a requirement",
@@ -32,8 +31,6 @@ STUDIES = {
     "parking-world": "orchestrator.studies.parking.parking_world.study",
     "bakeoff": "orchestrator.studies.bakeoff.study",
     "guo2015-claim": "orchestrator.studies.bakeoff.claim",
-    "search-kpis": "orchestrator.studies.parking.search_kpis",
-    "valet-rows": "orchestrator.studies.parking.slot_rows",
     "valet-slots": "orchestrator.studies.parking.detected_slot_study",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which

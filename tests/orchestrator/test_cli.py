@@ -5,7 +5,6 @@ import json
 import os
 import pkgutil
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -302,40 +301,6 @@ def test_list_gives_defaults_ranges_limits_and_says_if_nothing_fits(capsys: pyte
     assert "\u00b1 0.150 m" in capsys.readouterr().out
     assert main(["list", "parameters", "nothing-of-this-name"]) == 2
     capsys.readouterr()
-
-
-COMPLETE = """source {script}
-t() {{ COMP_WORDS=("$@"); COMP_CWORD=$(($#-1)); COMPREPLY=(); _apa; echo "${{COMPREPLY[@]}}"; }}
-t apa re; t apa run guo2015-case4-l; t apa run x --fmus na; t apa export m; t apa build --ki"""
-
-
-def test_completion_in_bash(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["completion", "bash"]) == 0
-    script = tmp_path / "apa.bash"
-    script.write_text(capsys.readouterr().out)
-    command = ["bash", "-c", COMPLETE.format(script=script)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert done.stderr == ""
-    assert done.stdout.splitlines() == [
-        "recover replay report reproduce rerun",
-        "guo2015-case4-left",
-        "native",
-        "mf4",
-        "",
-    ]
-
-
-@pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_completion_in_other_shells(shell: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["completion", shell]) == 0
-    text = capsys.readouterr().out
-    assert "guo2015-case4-left" in text
-    if shutil.which(shell) is None:
-        pytest.skip(f"{shell} is not installed")
-    script = tmp_path / "script"
-    script.write_text(text)
-    asked = {"zsh": "autoload -U compinit; compinit -u", "fish": "true"}[shell]
-    subprocess.run([shell, "-c", f"{asked}; source {script}"], capture_output=True, text=True, check=True)
 
 
 def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from modelkit.variables import variables
 from orchestrator.simulation.cosim.fmu_files import can_compile
-from orchestrator.studies.parking import detected_slot_study, pull_out_study, search_kpis, slot_rows, study
+from orchestrator.studies.parking import detected_slot_study, pull_out_study, study
 from orchestrator.studies.parking.cases import cases as grid_cases
 from orchestrator.studies.parking.parking_world import study as parking_world
 from orchestrator.studies.parking.system_signals import APA_SYSTEM
@@ -20,8 +20,6 @@ MADE: dict[str, Callable[[], Study]] = {
     "apa-out": lambda: pull_out_study.study(3),
     "apa-world": lambda: world.study(3),
     "parking-world": lambda: parking_world.study(3),
-    "search-kpis": lambda: search_kpis.study_of(search_kpis.cases()[:3]),
-    "valet-rows": slot_rows.study,
     "valet-slots": lambda: detected_slot_study.study(3, ways=True),
 }
 """Study -> some of its runs."""
@@ -42,8 +40,7 @@ def test_all_that_is_set_and_kept_exists(name: str) -> None:
 
 @pytest.mark.skipif(not can_compile(), reason="runs of seconds take a C compiler")
 def test_the_slot_shown_is_measured() -> None:
-    found = columns_in_memory(search_kpis.study_of(search_kpis.cases()[5:7]))
-    assert set(found["search"]) == {search_kpis.FOUND}
+    found = columns_in_memory(study.study_of(grid_cases()[5:7]))
     assert (found["corner_a"] < 0.15).all()
     assert (found["parking_time"] > 5.0).all()
     assert (found["parking_time"] < found["duration"]).all()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.summary import Summary, summarize
 from orchestrator.inputs.scenario.load_scenario import scenario_names
 from orchestrator.inputs.scenario.scenario import Scenario
@@ -180,8 +180,8 @@ def read_log(path: Path | str) -> Run:
     """Return the run in a log of ours, or in a run's folder. Raises ``BadInput``."""
     file = log_file(str(path))
     recording = read_recording(file)
-    scenario, note = read_logged_run(recording, str(file), file.stem)
-    return Run(scenario, recording, summarize(recording, scenario, 0.0, note))
+    scenario = read_logged_scenario(recording, str(file), file.stem)
+    return Run(scenario, recording, summarize(recording, scenario, 0.0))
 
 
 def _sets(changes: Changes | None) -> list[str]:

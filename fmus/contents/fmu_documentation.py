@@ -4,17 +4,18 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.arrays import visible_arrays
-from fmus.contents.icon import icon
-from fmus.contents.pages import LICENCE, index_page
+from fmus.contents.pages import index_page
 from fmus.contents.variables import visible_variables
 from fmus.contents.xml_file import xml_bytes
 from modelkit.model import Model, Terminal
 from modelkit.variables import flattener, variables
 
+HERE = Path(__file__).parent
 LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
 LS_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 MOST_ROWS = 600
@@ -29,12 +30,10 @@ ALL_PORTS = (
 
 def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
     """Return path -> content; ``needs`` is HTML that says what the host must have."""
-    ports = [variable.causality for variable in visible_variables(model)]
-    picture = icon(model.name, ports.count("input"), ports.count("output"))
     return {
         "documentation/index.html": index_page(model, needs, fmi),
-        "documentation/licenses/license.txt": LICENCE.encode(),
-        "terminalsAndIcons/icon.png" if fmi == 3 else "model.png": picture,
+        "documentation/licenses/license.txt": (HERE / "license.txt").read_bytes(),
+        "terminalsAndIcons/icon.png" if fmi == 3 else "model.png": (HERE / "icon.png").read_bytes(),
         "terminalsAndIcons/terminalsAndIcons.xml": terminals(model, fmi),
     }
 

@@ -5,11 +5,11 @@ import json
 from pathlib import Path
 
 from orchestrator.evaluation.verdict.judge import judge
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.numbers import facts_of
 from orchestrator.inputs.scenario.files import find_file
 from orchestrator.inputs.scenario.requirements import read_requirements
-from orchestrator.inputs.text.console import console, say
+from orchestrator.inputs.text.console import console
 from orchestrator.presentation.log.read_log import log_file, read_log
 from orchestrator.session.terminal import checks_table
 from orchestrator.testing.suite.junit import Suite, cases_of, write_junit
@@ -43,9 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge and print. Returns 0 if every required requirement is met, 1 if not."""
     recording = read_log(arguments.log)
-    scenario, note = read_logged_run(recording, str(arguments.log))
-    if note:
-        say(note)
+    scenario = read_logged_scenario(recording, str(arguments.log))
     facts = facts_of(recording, scenario)
     checks = []
     for name in arguments.requirements:

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.text.console import say, working
 from orchestrator.inputs.text.errors import PARKED, BadInput
@@ -71,19 +71,18 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out or log.parent / "report.html"
     with lock_with(log, out):
         recording = read_log(log)
-        scenario, note = read_logged_run(recording, str(log), log.stem)
-        if note:
-            say(note)
-        write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
+        scenario = read_logged_scenario(recording, str(log), log.stem)
+        write_replay(out, recording, summarize(recording, scenario, 0.0), read_messages(log))
     print(out)
     return PARKED
 
 
 def _write_figure(arguments: argparse.Namespace) -> int:
     from orchestrator.presentation.drawing.decimation import decimate
-    from orchestrator.presentation.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
+    from orchestrator.presentation.drawing.run_figure import run_figure, save_figure, width_in_cm
+    from orchestrator.presentation.drawing.save import check_picture
 
-    check_figure(arguments.figure)
+    check_picture(arguments.figure)
     if not 10 <= arguments.dpi <= 2400:
         raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
     runs = [(log_name(log), decimate(read_log(log))) for log in arguments.log]
@@ -106,10 +105,8 @@ def _write_video(arguments: argparse.Namespace) -> int:
         raise BadInput("a video is of one run; several runs are overlaid with --figure FILE", key="--video")
     log: Path = arguments.log[0]
     recording = read_log(log)
-    scenario, note = read_logged_run(recording, str(log), log.stem)
-    if note:
-        say(note)
-    summary = summarize(recording, scenario, 0.0, note)
+    scenario = read_logged_scenario(recording, str(log), log.stem)
+    summary = summarize(recording, scenario, 0.0)
     with working("drawing the video"):
         count = write_video(arguments.video, overview_of(recording, summary, scenario), options)
     say(f"{count} frames")

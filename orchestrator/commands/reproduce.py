@@ -88,11 +88,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print_bibtex(names: list[str]) -> int:
-    from orchestrator.studies.papers.table_files import BIBTEX
+    from orchestrator.studies.papers.table_files import bibtex_entries
 
     for name in names:
         paper(name)
-    print("\n".join(BIBTEX[name] for name in names if name in BIBTEX), end="")
+    entries = bibtex_entries()
+    print("\n".join(entries[name] for name in names if name in entries), end="")
     return PARKED
 
 

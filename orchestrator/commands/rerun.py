@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from orchestrator.commands.run.once import execute
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.summary import FmuUsed
 from orchestrator.inputs.text.console import console, say
 from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     first = read_log(log)
     if not first.info.get("scenario"):
         raise BadInput("has no scenario, so there is nothing to run again", file=log)
-    scenario = read_logged_run(first, str(log)).scenario
+    scenario = read_logged_scenario(first, str(log))
     used = [FmuUsed(**item) for item in first.info.get("fmus", [])]
     changed = [item.name for item in used if item.kind == FOREIGN and not _is_same_file(item, log)]
     files = {item.name: Path(item.path) for item in used if item.kind == FOREIGN}

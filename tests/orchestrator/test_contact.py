@@ -15,7 +15,7 @@ from modelkit.car import Car
 from modelkit.geometry import Box, orient, overlap_depth
 from modelkit.vocabulary import Pose
 from orchestrator.cli import main
-from orchestrator.evaluation.verdict.contact import clearance_parts, contact_facts
+from orchestrator.evaluation.verdict.contact import clearance_parts
 from orchestrator.evaluation.verdict.geometry import CarOutline
 from orchestrator.evaluation.verdict.polygons import polygon_clearances
 from orchestrator.evaluation.verdict.standing import beyond_ends, outline_margin
@@ -155,16 +155,6 @@ def test_a_vehicle_of_others_is_judged_by_its_poses(through_box: Any) -> None:
         "not_parked",
         "not measured: outline in the slot, free of contact",
     )
-
-
-def test_a_log_of_an_older_version_has_zero_in_contact(through_box: Any) -> None:
-    recording, _ = through_box
-    older = dict(recording.signals)
-    older["vehicle.clearance"] = np.maximum(older["vehicle.clearance"], 0.0)
-    read = Recording(recording.t_ns, older, recording.parameters, recording.variables, recording.info)
-    assert summarize(read, through("requirements=[]"), 0.0).reason == "contact"
-    found = contact_facts(read, through("requirements=[]"))
-    assert found.scene == -found.depth < 0.0
 
 
 def parted(a: Any, b: Any) -> float:

@@ -15,7 +15,7 @@ from orchestrator.cli import main
 from orchestrator.evaluation.comparison import traces
 from orchestrator.evaluation.comparison.compare import compare
 from orchestrator.evaluation.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.drawing.decimation import decimate, deviation
@@ -92,7 +92,7 @@ def parked(tmp_path_factory: pytest.TempPathFactory) -> tuple[Recording, Path]:
 
 
 def plain(recording: Recording) -> str:
-    return summarize(recording, read_logged_run(recording).scenario, 0.0).model_dump_json()
+    return summarize(recording, read_logged_scenario(recording), 0.0).model_dump_json()
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def test_a_run_that_is_stored_meanwhile_is_judged_to_the_same_bits(
 
 def test_contact_by_poses_is_the_same_block_by_block(parked: tuple[Recording, Path], stored: Recording) -> None:
     """A third-party vehicle puts out no clearance, so every pose is held against the scene."""
-    scenario = read_logged_run(parked[0]).scenario.model_copy(
+    scenario = read_logged_scenario(parked[0]).model_copy(
         update={"obstacles": [[(-9, -4), (-7, -4), (-7, -2), (-9, -2)]]}
     )
     for run in (parked[0], stored):

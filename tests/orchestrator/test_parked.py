@@ -16,7 +16,7 @@ from controller_fmu.registry import ControllerOutput
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.evaluation.verdict.geometry import CarOutline, place, slot_box
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.numbers import NUMBERS
 from orchestrator.evaluation.verdict.outcome import state_name
 from orchestrator.evaluation.verdict.standing import outline_margin
@@ -166,19 +166,16 @@ def test_a_controller_told_another_target_is_judged_by_the_true_one() -> None:
     assert verdict().notes == []
 
 
-def test_a_log_without_a_target_is_judged_by_what_the_controller_was_told() -> None:
+def test_a_log_of_another_tool_has_no_target(capsys: pytest.CaptureFixture[str]) -> None:
     old = standing((1.0, 2.0, 0.5))
     del old.info["scenario"]["target"]
-    old.parameters |= {"controller.target.x": 1.0, "controller.target.y": 1.9, "controller.target.heading": 0.5}
-    scenario, note = read_logged_run(old)
-    assert "the target given to the controller" in note
-    found = summarize(old, scenario, 1.0, note)
-    assert found.final.lateral_error == pytest.approx(0.1 * math.cos(0.5))
-    assert found.notes == [note]
-    foreign = Recording(old.t_ns, old.signals, {}, old.variables, {})
-    scenario, note = read_logged_run(foreign)
-    assert (scenario.target, note) == (None, "no target is in this log: where the car should stand is not known")
-    assert math.isnan(summarize(foreign, scenario, 1.0).final.lateral_error)
+    for recording in (old, Recording(old.t_ns, old.signals, {}, old.variables, {})):
+        scenario = read_logged_scenario(recording, "theirs.mcap")
+        assert capsys.readouterr().err.startswith("apa: warning: theirs.mcap: no target is in this log")
+        assert scenario.target is None
+        assert math.isnan(summarize(recording, scenario, 1.0).final.lateral_error)
+        read_logged_scenario(recording)
+        assert capsys.readouterr().err == "", "a page says nothing of it"
 
 
 KERB = ["slot={x: 0, y: 0, length: 7, width: 2.4}", "target={x: -1.2, y: 0}", "requirements=[gbt41630]"]

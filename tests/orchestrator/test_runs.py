@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.provenance import git_commit
 from orchestrator.simulation.cosim.fmu_files import sources_hash
@@ -96,7 +96,7 @@ def test_the_page_of_a_repeated_run_has_the_slot_layout_of_the_log(tmp_path: Pat
     assert main(["run", "apa-parallel", *layout, "--fmus", "none", "--out", str(tmp_path / "run"), "-q"]) == 1
     assert main(["rerun", str(tmp_path / "run"), "-q"]) == 1
     first, again = (
-        layout_data(read_logged_run(read_log(tmp_path / name / "run.mcap")).scenario) for name in ("run", "run-rerun")
+        layout_data(read_logged_scenario(read_log(tmp_path / name / "run.mcap"))) for name in ("run", "run-rerun")
     )
     assert first == again
     assert first is not None

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Target
@@ -60,8 +60,7 @@ def test_the_card_of_a_test_is_turned_to_the_true_target(ran: tuple[SimulationRe
 
 
 def test_the_log_carries_what_is_true(ran: tuple[SimulationResult, Path]) -> None:
-    scenario, note = read_logged_run(read_log(ran[1]))
-    assert note == ""
+    scenario = read_logged_scenario(read_log(ran[1]))
     assert (scenario.target, scenario.slot, scenario.stop_condition) == (TOLD.target, TOLD.slot, TOLD.stop_condition)
     assert scenario.requirements == TOLD.requirements
 

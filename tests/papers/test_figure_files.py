@@ -13,7 +13,7 @@ from orchestrator.studies.papers.figure_files import write_figures
 from orchestrator.studies.papers.paper_figures import FIGURES, PaperFigure
 from orchestrator.studies.papers.papers import papers
 from orchestrator.studies.papers.result import CONCLUSION, Drive, Reproduction, Row, not_tested
-from orchestrator.studies.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
+from orchestrator.studies.papers.table_files import bibtex_entries, csv_text, latex_text, summary_lines, total
 
 ROWS = [
     Row("run_1", "depth", "m", 1.0, 1.5, 0.1, basis=CONCLUSION, differs="50 % & more"),
@@ -25,7 +25,7 @@ RESULTS = [Reproduction("one", "One", ROWS, []), Reproduction("two", "Two", ROWS
 
 
 def test_every_figure_has_a_counterpart_or_a_reason() -> None:
-    assert {item.paper for item in FIGURES} == set(papers()) == set(BIBTEX)
+    assert {item.paper for item in FIGURES} == set(papers()) == set(bibtex_entries())
     counts = {paper: sum(item.paper == paper and item.number != "States" for item in FIGURES) for paper in papers()}
     assert counts == {"apa": 5, "guo2015": 13, "hsic": 13, "preview": 12, "zhang2022": 8}
     assert all(len(item.note) > 10 for item in FIGURES if item.draw is None)

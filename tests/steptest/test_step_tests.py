@@ -18,6 +18,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.testing.steptest.run import run_step_test
 from orchestrator.testing.steptest.step_test import is_step_test, load_step_test
 from orchestrator.testing.steptest.stimuli import StimulatedInput, stimulus
+from tests.report.test_page import data_of
 from vehicle_fmu.interface import VehicleInput
 
 T = np.arange(0.0, 5.0, 0.5)
@@ -255,9 +256,13 @@ def test_apa_test_takes_them_beside_scenarios(write: Any, tmp_path: Path, capsys
     assert "1 of 2 scenarios passed" in said
     suites = {suite.get("name"): suite for suite in ElementTree.parse(out / "junit.xml").getroot()}
     assert (suites["steering"].get("tests"), suites["steering"].get("failures")) == ("2", "1")
-    page = (out / "steering" / "report.html").read_text(encoding="utf-8")
-    assert "1 of 2 met" in page
-    assert "<svg" in page
+    header, _ = data_of((out / "steering" / "report.html").read_text(encoding="utf-8"))
+    assert header["verdict"] == {"text": "1 of 2 met", "kind": "bad"}
+    assert [check["id"] for check in header["runs"][0]["checks"]] == ["too fast", "at rest before"]
+    judged, request, *_ = header["plots"]
+    assert judged["signals"] == ["vehicle.steering_wheel_angle"]
+    assert judged["limits"] == pytest.approx([-math.radians(0.1), math.radians(0.1)]), "the rise time is no angle"
+    assert request["signals"] == ["vehicle.steering_wheel_request"]
     assert "too fast" in (out / "index.html").read_text(encoding="utf-8")
 
 

@@ -1,7 +1,7 @@
 """Contact of the car with the scene: from what the vehicle puts out, or from its poses where that is not enough.
 
 The vehicle of this project puts out its clearance, in contact minus the penetration depth. A third-party vehicle may
-put out none, and older logs have 0 in contact: there the true outline is held against the true scene, at every pose.
+put out none: there the true outline is held against the true scene, at every pose.
 """
 
 import math
@@ -110,9 +110,8 @@ def depth(nearest: float) -> float:
 def clearance_parts(recording: Recording, scenario: Scenario) -> Iterator[tuple[Recording, Clearances]]:
     """Yield a run part by part with the distances of the outline to what stands in ``scenario``."""
     parameters = vehicle_parameters(scenario, recording.parameters_of(VEHICLE))
-    is_taken = _is_output_taken(recording)
     for part, _, _ in recording.parts():
-        scene = _to_scene(part, parameters, is_taken)
+        scene = _to_scene(part, parameters)
         if not scenario.obstacles:
             yield part, Clearances(scene, np.full(len(scene), np.inf))
             continue
@@ -124,29 +123,16 @@ def clearance_parts(recording: Recording, scenario: Scenario) -> Iterator[tuple[
             yield part, Clearances(scene, near)
 
 
-def _is_output_taken(recording: Recording) -> bool:
-    """Return whether the vehicle's own output is the distance: it is ours, and tells the depth of a contact."""
-    if CLEARANCE not in recording.signals or not _is_ours(recording):
-        return False
-    touches = False
-    for part, _, _ in recording.parts():
-        own = part.signals[CLEARANCE]
-        if (own < 0.0).any():
-            return True
-        touches = touches or bool((own == 0.0).any())
-    return not touches
-
-
-def _to_scene(recording: Recording, parameters: Mapping[str, float], is_taken: bool) -> Array:
-    """Return the distances to boxes and kerbs: as the vehicle puts them out, or of its poses from the scene."""
+def _to_scene(recording: Recording, parameters: Mapping[str, float]) -> Array:
+    """Return the distances to boxes and kerbs: as our vehicle puts them out, or of another's poses from the scene."""
     own = recording.signals.get(CLEARANCE)
-    if own is not None and is_taken:
+    if own is not None and _is_ours(recording):
         return own
     poses = _poses(recording)
     if poses is None:
         return np.full(len(recording.t), np.nan) if own is None else np.where(own <= 0.0, -TOUCH_DEPTH, own)
     found = _at_poses(poses, recording.t, parameters)
-    return found if own is None or _is_ours(recording) else np.where(own <= 0.0, np.minimum(found, -TOUCH_DEPTH), found)
+    return found if own is None else np.where(own <= 0.0, np.minimum(found, -TOUCH_DEPTH), found)
 
 
 def _is_ours(recording: Recording) -> bool:

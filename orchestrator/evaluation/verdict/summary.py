@@ -202,12 +202,9 @@ class Summary(_Part):
         return data
 
 
-def summarize(
-    recording: Recording, scenario: Scenario, wall_time: float, note: str = "", facts: RunFacts | None = None
-) -> Summary:
+def summarize(recording: Recording, scenario: Scenario, wall_time: float, facts: RunFacts | None = None) -> Summary:
     """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist.
 
-    ``note``: what its log does not tell, see :func:`orchestrator.evaluation.verdict.logged_scenario.read_logged_run`.
     ``facts``: those of :func:`orchestrator.evaluation.verdict.numbers.facts_of`, if they are known already.
     """
     facts = facts_of(recording, scenario) if facts is None else facts
@@ -215,7 +212,7 @@ def summarize(
     outcome, reason = _outcome(recording, scenario, checks)
     events = _events(recording)
     many = f"only the first {MOST_EVENTS} changes of phase are listed" if len(events) == MOST_EVENTS else ""
-    said = (note, *_contact(recording, scenario, numbers), _target_difference(recording, scenario), many)
+    said = (*_contact(recording, scenario, numbers), _target_difference(recording, scenario), many)
     return Summary(
         scenario=scenario.name,
         overrides=scenario.overrides,

@@ -10,10 +10,11 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from orchestrator.evaluation.verdict.geometry import moving_boxes
 from orchestrator.inputs.text.errors import BadInput, suggestion
 from orchestrator.presentation.drawing.panels import DEGREE, PANELS, Panel, PanelCurve
 from orchestrator.presentation.drawing.picture_data import path_plans, path_points
-from orchestrator.presentation.drawing.save import check_picture, save
+from orchestrator.presentation.drawing.save import save
 from orchestrator.simulation.cosim.recording import Recording
 
 STYLES = ("screen", "paper")
@@ -94,11 +95,6 @@ def width_in_cm(text: str) -> float:
     return width
 
 
-def check_figure(path: Path) -> None:
-    """Raise ``BadInput`` unless the name is that of a figure."""
-    check_picture(path)
-
-
 def _check_panel(panel: str, recording: Recording) -> None:
     names = [shown.name for shown in PANELS]
     if panel in names or panel == PATH or panel in recording.signals:
@@ -166,14 +162,5 @@ def _draw_key_points(axis: Any, recording: Recording) -> None:
 
 
 def _draw_boxes(axis: Any, recording: Recording) -> None:
-    p = recording.parameters_of("vehicle")
-    for number in range(1, 17):
-        key = f"scene.boxes[{number}]."
-        length, width = p.get(f"{key}length", 0.0), p.get(f"{key}width", 0.0)
-        if length <= 0.0:
-            continue
-        c, s = np.cos(p.get(f"{key}heading", 0.0)), np.sin(p.get(f"{key}heading", 0.0))
-        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (0.5 * length, 0.5 * width)
-        x = p.get(f"{key}x", 0.0) + corners[:, 0] * c - corners[:, 1] * s
-        y = p.get(f"{key}y", 0.0) + corners[:, 0] * s + corners[:, 1] * c
-        axis.fill(x, y, facecolor="#dddddd", edgecolor="#888888", linewidth=0.6)
+    for box in moving_boxes(recording.parameters_of("vehicle")):
+        axis.fill(*box.outline().T, facecolor="#dddddd", edgecolor="#888888", linewidth=0.6)

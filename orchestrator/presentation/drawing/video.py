@@ -8,8 +8,10 @@ import math
 import shutil
 import subprocess
 from collections.abc import Iterator
+from contextlib import suppress
+from itertools import chain
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -33,6 +35,11 @@ INCHES = (12.8, 7.2)
 """Size of the picture; the width in pixels chooses its resolution."""
 PLAN, CURVES = (0.05, 0.33, 0.93, 0.58), ((0.06, 0.08, 0.4, 0.17), (0.56, 0.08, 0.4, 0.17))
 """Axes of the top view and of the two curves, as shares of the picture."""
+SHOWN = (
+    ("vehicle.speed", "speed [m/s]", 1.0),
+    ("vehicle.steering_wheel_angle", "steering wheel [deg]", 1.0 / RAD_PER_DEGREE),
+)
+"""Signals of the curves, their titles, and their factors."""
 MAX_OUTLINES = 60
 """So many outlines of the car along its path have room in the top view."""
 LAST_FRAME_TIME = 1.0
@@ -66,10 +73,11 @@ def write_video(path: Path, seen: Overview, options: VideoOptions) -> int:
     check_video(path, options)
     rate = FRAME_RATES[path.suffix.lower()]
     times = _times(seen, options.speed / rate)
+    times += [times[-1]] * round(LAST_FRAME_TIME * rate)
     with whole(path) as part, mpl.rc_context(STYLE):
-        frames = _frames(seen, [*times, *[times[-1]] * round(LAST_FRAME_TIME * rate)], options.width)
-        count = _write_gif(part, frames, rate) if path.suffix.lower() == ".gif" else _write_mp4(part, frames, rate)
-    return count
+        write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
+        write(part, _frames(seen, times, options.width), rate)
+    return len(times)
 
 
 def _times(seen: Overview, step: float) -> list[float]:
@@ -112,7 +120,7 @@ class _Moving:
         ends = np.vstack([place(seen.car.outline(), *self._pose(row)) for row in rows])
         self._plan.plot(*ends.T, alpha=0.0)
         figure.text(0.02, 0.965, seen.title, fontweight="bold", color=INK, va="center", fontsize=11.0)
-        self._cursors = [self._curve(figure.add_axes(at), *what) for at, what in zip(CURVES, _curves(), strict=True)]
+        self._cursors = [self._curve(figure.add_axes(at), *what) for at, what in zip(CURVES, SHOWN, strict=True)]
         self._trail = self._hidden(self._plan.plot([], [], color=BLUE, linewidth=1.8, zorder=5)[0])
         self._body = self._patch("#cfe0fb", BLUE)
         self._wheels = [self._patch(INK, INK) for _ in seen.car.wheels()]
@@ -172,66 +180,29 @@ class _Moving:
         return artist
 
 
-def _curves() -> tuple[tuple[str, str, float], ...]:
-    return ("vehicle.speed", "speed [m/s]", 1.0), (
-        "vehicle.steering_wheel_angle",
-        "steering wheel [deg]",
-        1.0 / RAD_PER_DEGREE,
-    )
-
-
-def _write_gif(path: Path, frames: Iterator[Array], rate: float) -> int:
-    """Write an animated GIF; return the number of frames."""
+def _write_gif(path: Path, frames: Iterator[Array], rate: float) -> None:
+    """Write an animated GIF with the colours of its first frame."""
     from PIL import Image
 
     first = Image.fromarray(next(frames)).convert("RGB").quantize(128)
-    counted = [1]
-
-    def others() -> Iterator[Any]:
-        for pixels in frames:
-            counted[0] += 1
-            yield Image.fromarray(pixels).convert("RGB").quantize(palette=first, dither=Image.Dither.NONE)
-
-    first.save(path, "GIF", save_all=True, append_images=others(), duration=round(1000.0 / rate), loop=0)
-    return counted[0]
+    pictures = (Image.fromarray(pixels).convert("RGB") for pixels in frames)
+    others = (picture.quantize(palette=first, dither=Image.Dither.NONE) for picture in pictures)
+    first.save(path, "GIF", save_all=True, append_images=others, duration=round(1000.0 / rate), loop=0)
 
 
-def _write_mp4(path: Path, frames: Iterator[Array], rate: float) -> int:
-    """Write an MP4 (H.264) with ffmpeg; return the number of frames. Raises ``BadInput`` with its last words."""
+def _write_mp4(path: Path, frames: Iterator[Array], rate: float) -> None:
+    """Write an MP4 (H.264) with ffmpeg. Raises ``BadInput`` with its last words."""
     first = next(frames)
     height, width = first.shape[:2]
-    words = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}"]
-    words += [
-        "-r",
-        f"{rate:g}",
-        "-i",
-        "-",
-        "-an",
-        "-pix_fmt",
-        "yuv420p",
-        "-movflags",
-        "+faststart",
-        "-f",
-        "mp4",
-        str(path),
-    ]
+    raw = f"-f rawvideo -pix_fmt rgba -s {width}x{height} -r {rate:g} -i -".split()
+    coded = ["-an", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4"]
+    words = ["ffmpeg", "-y", "-loglevel", "error", *raw, *coded, str(path)]
     program = subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     assert program.stdin is not None
-    count = _feed(program.stdin, first, frames)
+    with suppress(BrokenPipeError):  # it has ended, and says why
+        for pixels in chain([first], frames):
+            program.stdin.write(pixels.tobytes())
     _, said = program.communicate()
     if program.returncode != 0:
         lines = said.decode(errors="replace").strip().splitlines() or [f"exit code {program.returncode}"]
         raise BadInput(f"ffmpeg wrote no video: {lines[-1]}")
-    return count
-
-
-def _feed(pipe: IO[bytes], first: Array, frames: Iterator[Array]) -> int:
-    """Send frames through a pipe as long as a reader is there; return how many."""
-    count = 0
-    try:
-        for pixels in (first, *frames):
-            pipe.write(pixels.tobytes())
-            count += 1
-    except BrokenPipeError:
-        return count
-    return count

@@ -10,7 +10,7 @@ from fmus.files import write_whole
 from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.evaluation.verdict.geometry import CarOutline, boxes, place, sample_path, slot_box, vehicle_parameters
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.locked_folder import lock_with
@@ -107,7 +107,7 @@ def _flat(points: Array) -> Array:
 
 
 def _still(rr: Any, stream: Any, recording: Recording) -> None:
-    scenario = read_logged_run(recording).scenario
+    scenario = read_logged_scenario(recording)
     if scenario.slot is not None:
         line = rr.LineStrips2D([_flat(slot_box(scenario.slot).outline())], colors=[[120, 160, 220]])
         stream.log("scene/slot", line, static=True)

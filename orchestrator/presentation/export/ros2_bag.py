@@ -13,7 +13,7 @@ from orchestrator.evaluation.verdict.geometry import (
     sample_path,
     vehicle_parameters,
 )
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.presentation.drawing.scene import CAR as CAR_FRAME
 from orchestrator.presentation.drawing.scene import FRONT_WHEELS, WORLD, Surroundings, still_life
 from orchestrator.presentation.drawing.scene import ODOMETRY as ODOMETRY_FRAME
@@ -142,7 +142,7 @@ class Bag:
         ]
         if mounts:
             self.write(0, "/tf_static", "tf2_msgs/TFMessage", transforms=mounts)
-        scenario = read_logged_run(recording).scenario
+        scenario = read_logged_scenario(recording)
         around = vehicle_parameters(scenario, recording.parameters_of("vehicle"))
         stage = Surroundings.of(scenario, around)
         for t_ns in stage.changes_ns():

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orchestrator.evaluation.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box, vehicle_parameters
-from orchestrator.evaluation.verdict.logged_scenario import read_logged_run
+from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.recording import Recording
 
@@ -24,7 +24,7 @@ def origin_of(recording: Recording) -> Point:
 
 def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
     """Return the drawing of a run's surroundings for ``template/scene.js``, positions less ``origin`` [m]."""
-    scenario, vehicle = read_logged_run(recording).scenario, recording.parameters_of("vehicle")
+    scenario, vehicle = read_logged_scenario(recording), recording.parameters_of("vehicle")
     slot, target, around = scenario.slot, scenario.target, vehicle_parameters(scenario, vehicle)
     car = CarOutline.of(around)
     return {

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.sweep.page.statistics import variance_share
 
 BOOTSTRAP_SAMPLES = 200
 """Resamplings."""
@@ -42,27 +43,13 @@ def first_orders(shares: Array, margins: Array, seed: int) -> list[Index]:
     picks = [rng.integers(0, len(margins), len(margins)) for _ in range(BOOTSTRAP_SAMPLES)]
     found = []
     for cell in cells.T:
-        again = [_first(cell[pick], margins[pick], count) for pick in picks]
-        own = _first(cell, margins, count)
+        again = [variance_share(margins[pick], cell[pick]) for pick in picks]
+        own = variance_share(margins, cell)
         # resampling a finite sample adds its own chance once more: the middle of the resampled ones is taken off
         shift = own - float(np.median(again))
         low, high = np.quantile(again, (0.025, 0.975)) + shift
         found.append(Index(own, float(min(max(low, 0.0), own)), float(min(max(high, own), 1.0))))
     return found
-
-
-def _first(cell: Array, margins: Array, count: int) -> float:
-    total = float(np.var(margins))
-    if total == 0.0:
-        return 0.0
-    sizes = np.bincount(cell, minlength=count)
-    sums = np.bincount(cell, weights=margins, minlength=count)
-    squares = np.bincount(cell, weights=margins**2, minlength=count)
-    used = sizes > 1
-    means, n = sums[used] / sizes[used], sizes[used]
-    within = (squares[used] / n - means**2) * n / (n - 1)
-    between = np.average((means - np.average(means, weights=n)) ** 2, weights=n) - np.average(within / n, weights=n)
-    return float(np.clip(between / total, 0.0, 1.0))
 
 
 def total_index(own: Array, changed: Array, variance: float, seed: int) -> Index:

@@ -357,173 +357,104 @@ def set_speed_sweep(_: list[Driven]) -> Figure:
     return figure
 
 
-def _guo(number: str, case: int, printed: tuple[tuple[float, float, float, float], ...] = ()) -> PaperFigure:
-    names = (f"guo2015-case{case}", f"guo2015-case{case}-105")
-    note = "Panels a to d as printed; dotted: the target at the car's x. Both steering rates."
-    return PaperFigure("guo2015", number, f"case {case}", partial(guo_case, printed=printed), names, note)
-
-
+Printed = tuple[float, float, float, float]
+"""A point that a paper prints: time [s], x, y [m], heading [rad]; NaN where it prints none."""
+FigureRow = tuple[str, str, Draw | None, tuple[str, ...], str]
+"""Number, title, what draws it, its scenarios, and why there is none or what differs."""
 NAN = float("nan")
 DISTANCES = (
     ("controller.preview.l1 controller.preview.l2", "preview distance [m]", 1.0),
     ("vehicle.speed controller.preview.wanted_speed", "speed [m/s]", 1.0),
 )
-FIGURES: tuple[PaperFigure, ...] = (
-    PaperFigure(
-        "guo2015",
-        "Fig. 1",
-        "flow chart of the system",
-        None,
-        note="search and planning around the chart of Fig. 11, which is drawn",
-    ),
-    PaperFigure("guo2015", "Fig. 2", "Ackermann geometry", None, note=SKETCH),
-    PaperFigure("guo2015", "Fig. 3", "path tracking", None, note=SKETCH),
-    PaperFigure("guo2015", "Fig. 4", "deviation from the path", None, note=SKETCH),
-    PaperFigure("guo2015", "Fig. 5", "simulation model", None, note=SIMULINK),
-    _guo("Fig. 6", 1, ((9.5, -3.8, NAN, NAN),)),
-    _guo("Fig. 7", 2, ((3.5, -3.8, NAN, NAN),)),
-    _guo("Fig. 8", 3),
-    PaperFigure("guo2015", "Fig. 9", "path and points Q1 to Q4", guo_points),
-    PaperFigure("guo2015", "Fig. 10", "deviation from a point", None, note=SKETCH),
-    PaperFigure(
-        "guo2015",
-        "Fig. 11",
-        "chart of NTBPTcwPT",
-        partial(state_chart, rows=guo_chart.TRANSITIONS, states=GuoPhase, guards=guo_chart.Guard),
-        note="Drawn from the table of transitions.",
-    ),
-    _guo(
-        "Fig. 12",
-        4,
-        (
-            (3.59, -3.8, NAN, NAN),
-            (4.58, -4.803, -2.441, 0.588),
-            (9.38, -3.078, -0.858, 0.771),
-            (11.6, -3.801, -1.539, 0.761),
-        ),
-    ),
-    _guo("Fig. 13", 5, ((22.0, NAN, -3.058, 0.002),)),
-    PaperFigure(
-        "preview", "Fig. 1", "block diagram", None, note="boxes and names; the page of the system lists the same parts"
-    ),
-    PaperFigure("preview", "Fig. 2", "vehicle model", None, note=SKETCH),
-    PaperFigure("preview", "Fig. 3", "car and target path", None, note=SKETCH),
-    PaperFigure(
-        "preview",
-        "Fig. 4",
-        "regulation of the two distances",
-        partial(over_distance, panels=DISTANCES, span=(60.0, 290.0)),
-        ("preview-8",),
-        "As driven on curve 1; the paper's is a sketch.",
-    ),
-    PaperFigure(
-        "preview",
-        "Fig. 5",
-        "membership functions",
-        memberships,
-        note="The paper's are lost; these are the sets chosen here.",
-    ),
-    PaperFigure("preview", "Fig. 6", "rule surfaces", rule_surfaces, note="Inputs on the universe [-3, 3]."),
-    PaperFigure("preview", "Fig. 7", "target road", target_road, note="Lengths of the straights are chosen."),
-    PaperFigure(
-        "preview",
-        "Fig. 8",
-        "L1 and L2 over 310 to 530 m",
-        partial(over_distance, panels=DISTANCES, span=(310.0, 530.0)),
-        ("preview-8",),
-    ),
-    PaperFigure("preview", "Fig. 9", "tracking errors", camera_errors, ("preview",)),
-    PaperFigure(
-        "preview",
-        "Fig. 10",
-        "speed and front-wheel angle",
-        partial(
-            over_distance,
-            panels=(DISTANCES[0], DISTANCES[1], ("vehicle.front_wheel_angle", "front wheel [deg]", 180.0 / np.pi)),
-            span=(0.0, 1e4),
-        ),
-        ("preview",),
-    ),
-    PaperFigure(
-        "preview",
-        "Fig. 11",
-        "errors over the set speed",
-        set_speed_sweep if can_compile() else None,
-        note="From the study `preview-speed`, which needs a C compiler; dotted: as printed.",
-    ),
-    PaperFigure(
-        "preview",
-        "Fig. 12",
-        "errors with a camera",
-        camera_errors,
-        ("preview-camera",),
-        "1.4 m where 0.2 m is printed: counted as differs.",
-    ),
-    PaperFigure("zhang2022", "Fig. 1", "kinematic model", None, note=SKETCH),
-    PaperFigure(
-        "zhang2022",
-        "Fig. 2",
-        "slot",
-        paths_of,
-        ("zhang2022",),
-        "The neighbours that l_c and l_k stand for, and the path between them.",
-    ),
-    PaperFigure("zhang2022", "Fig. 3", "arc, line, arc", None, note=SKETCH),
-    PaperFigure("zhang2022", "Fig. 4", "co-simulation", None, note=SIMULINK),
-    PaperFigure("zhang2022", "Fig. 5", "path", partial(zhang_errors, panel=PATH), ("zhang2022",)),
-    PaperFigure("zhang2022", "Fig. 6", "heading", partial(zhang_errors, panel="heading"), ("zhang2022",)),
-    PaperFigure("zhang2022", "Fig. 7", "speed", partial(zhang_errors, panel="speed"), ("zhang2022",)),
-    PaperFigure("zhang2022", "Fig. 8", "front-wheel angle error", partial(zhang_errors, panel="angle"), ("zhang2022",)),
-    *(
-        PaperFigure("hsic", f"Fig. {k}", title, None, note=note)
-        for k, title, note in (
-            (1, "ranging by ultrasound", SKETCH),
-            (2, "where a reversing aid is mounted", "a photograph"),
-            (3, "where sensors are", "a sketch of a car; the sensors' places are in the car files"),
-            (5, "method by experience", SKETCH),
-            (6, "kinematic model", SKETCH),
-            (7, "Simulink block", SIMULINK),
-            (8, "flow of the control", "four steps in words; the states as driven are Fig. 10"),
-        )
-    ),
-    PaperFigure("hsic", "Fig. 4", "arcs and common tangent", paths_of, ("hsic",), "Dotted: the planned path."),
-    PaperFigure(
-        "hsic", "Fig. 9", "key points", paths_of, ("hsic-straight",), "P1 to P4 are the ends of the dotted pieces."
-    ),
-    PaperFigure(
-        "hsic",
-        "Fig. 10",
-        "the 12 states",
-        hsic_states,
-        ("hsic", "hsic-straight", "hsic-shuffle"),
-        "When each holds; the paper sketches them.",
-    ),
-    PaperFigure("hsic", "Fig. 11", "simulation model", None, note=SIMULINK),
-    PaperFigure("hsic", "Fig. 12", "kinematic block", None, note=SIMULINK),
-    PaperFigure("hsic", "Fig. 13", "result", hsic_panels, ("hsic",)),
-    PaperFigure("apa", "Fig. 1", "parallel parking", paths_of, ("apa-parallel",)),
-    PaperFigure(
-        "apa",
-        "Fig. 2",
-        "range of starts",
-        None,
-        note="a sketch; this system plans from where the vehicle stands",
-    ),
-    PaperFigure("apa", "Fig. 3", "tangent arcs", None, note="a sketch; the path driven is Fig. 1"),
-    PaperFigure(
-        "apa",
-        "Fig. 4",
-        "smooth curvature",
-        apa_curvature,
-        ("apa-parallel",),
-        "The wheel turns while the vehicle rolls; the source has a B-spline.",
-    ),
-    PaperFigure("apa", "Fig. 5", "perpendicular parking", paths_of, ("apa-perpendicular",)),
-    PaperFigure(
-        "apa",
-        "States",
-        "state machine",
-        None,
-        note="this system's chart has states of its own: docs/parking.md",
-    ),
+STEERED = (*DISTANCES, ("vehicle.front_wheel_angle", "front wheel [deg]", 180.0 / np.pi))
+CASE_4 = (
+    (3.59, -3.8, NAN, NAN),
+    (4.58, -4.803, -2.441, 0.588),
+    (9.38, -3.078, -0.858, 0.771),
+    (11.6, -3.801, -1.539, 0.761),
 )
+CHART = partial(state_chart, rows=guo_chart.TRANSITIONS, states=GuoPhase, guards=guo_chart.Guard)
+ALL_STATES = ("hsic", "hsic-straight", "hsic-shuffle")
+NEAR_CURVE_1 = partial(over_distance, panels=DISTANCES, span=(60.0, 290.0))
+NEAR_CURVE_2 = partial(over_distance, panels=DISTANCES, span=(310.0, 530.0))
+WHOLE_ROAD = partial(over_distance, panels=STEERED, span=(0.0, 1e4))
+FLOW = "search and planning around the chart of Fig. 11, which is drawn"
+BESIDE = "The neighbours that l_c and l_k stand for, and the path between them."
+ON_CURVE_1 = "As driven on curve 1; the paper's is a sketch."
+CAMERA = "1.4 m where 0.2 m is printed: counted as differs."
+BLOCKS = "boxes and names; the page of the system lists the same parts"
+FROM_STUDY = "From the study `preview-speed`, which needs a C compiler; dotted: as printed."
+SMOOTH = "The wheel turns while the vehicle rolls; the source has a B-spline."
+
+
+def _case(number: str, case: int, printed: tuple[Printed, ...] = ()) -> FigureRow:
+    names = (f"guo2015-case{case}", f"guo2015-case{case}-105")
+    note = "Panels a to d as printed; dotted: the target at the car's x. Both steering rates."
+    return number, f"case {case}", partial(guo_case, printed=printed), names, note
+
+
+ROWS: dict[str, tuple[FigureRow, ...]] = {
+    "guo2015": (
+        ("Fig. 1", "flow chart of the system", None, (), FLOW),
+        ("Fig. 2", "Ackermann geometry", None, (), SKETCH),
+        ("Fig. 3", "path tracking", None, (), SKETCH),
+        ("Fig. 4", "deviation from the path", None, (), SKETCH),
+        ("Fig. 5", "simulation model", None, (), SIMULINK),
+        _case("Fig. 6", 1, ((9.5, -3.8, NAN, NAN),)),
+        _case("Fig. 7", 2, ((3.5, -3.8, NAN, NAN),)),
+        _case("Fig. 8", 3),
+        ("Fig. 9", "path and points Q1 to Q4", guo_points, (), ""),
+        ("Fig. 10", "deviation from a point", None, (), SKETCH),
+        ("Fig. 11", "chart of NTBPTcwPT", CHART, (), "Drawn from the table of transitions."),
+        _case("Fig. 12", 4, CASE_4),
+        _case("Fig. 13", 5, ((22.0, NAN, -3.058, 0.002),)),
+    ),
+    "preview": (
+        ("Fig. 1", "block diagram", None, (), BLOCKS),
+        ("Fig. 2", "vehicle model", None, (), SKETCH),
+        ("Fig. 3", "car and target path", None, (), SKETCH),
+        ("Fig. 4", "regulation of the two distances", NEAR_CURVE_1, ("preview-8",), ON_CURVE_1),
+        ("Fig. 5", "membership functions", memberships, (), "The paper's are lost; these are the sets chosen here."),
+        ("Fig. 6", "rule surfaces", rule_surfaces, (), "Inputs on the universe [-3, 3]."),
+        ("Fig. 7", "target road", target_road, (), "Lengths of the straights are chosen."),
+        ("Fig. 8", "L1 and L2 over 310 to 530 m", NEAR_CURVE_2, ("preview-8",), ""),
+        ("Fig. 9", "tracking errors", camera_errors, ("preview",), ""),
+        ("Fig. 10", "speed and front-wheel angle", WHOLE_ROAD, ("preview",), ""),
+        ("Fig. 11", "errors over the set speed", set_speed_sweep if can_compile() else None, (), FROM_STUDY),
+        ("Fig. 12", "errors with a camera", camera_errors, ("preview-camera",), CAMERA),
+    ),
+    "zhang2022": (
+        ("Fig. 1", "kinematic model", None, (), SKETCH),
+        ("Fig. 2", "slot", paths_of, ("zhang2022",), BESIDE),
+        ("Fig. 3", "arc, line, arc", None, (), SKETCH),
+        ("Fig. 4", "co-simulation", None, (), SIMULINK),
+        ("Fig. 5", "path", partial(zhang_errors, panel=PATH), ("zhang2022",), ""),
+        ("Fig. 6", "heading", partial(zhang_errors, panel="heading"), ("zhang2022",), ""),
+        ("Fig. 7", "speed", partial(zhang_errors, panel="speed"), ("zhang2022",), ""),
+        ("Fig. 8", "front-wheel angle error", partial(zhang_errors, panel="angle"), ("zhang2022",), ""),
+    ),
+    "hsic": (
+        ("Fig. 1", "ranging by ultrasound", None, (), SKETCH),
+        ("Fig. 2", "where a reversing aid is mounted", None, (), "a photograph"),
+        ("Fig. 3", "where sensors are", None, (), "a sketch of a car; the sensors' places are in the car files"),
+        ("Fig. 5", "method by experience", None, (), SKETCH),
+        ("Fig. 6", "kinematic model", None, (), SKETCH),
+        ("Fig. 7", "Simulink block", None, (), SIMULINK),
+        ("Fig. 8", "flow of the control", None, (), "four steps in words; the states as driven are Fig. 10"),
+        ("Fig. 4", "arcs and common tangent", paths_of, ("hsic",), "Dotted: the planned path."),
+        ("Fig. 9", "key points", paths_of, ("hsic-straight",), "P1 to P4 are the ends of the dotted pieces."),
+        ("Fig. 10", "the 12 states", hsic_states, ALL_STATES, "When each holds; the paper sketches them."),
+        ("Fig. 11", "simulation model", None, (), SIMULINK),
+        ("Fig. 12", "kinematic block", None, (), SIMULINK),
+        ("Fig. 13", "result", hsic_panels, ("hsic",), ""),
+    ),
+    "apa": (
+        ("Fig. 1", "parallel parking", paths_of, ("apa-parallel",), ""),
+        ("Fig. 2", "range of starts", None, (), "a sketch; this system plans from where the vehicle stands"),
+        ("Fig. 3", "tangent arcs", None, (), "a sketch; the path driven is Fig. 1"),
+        ("Fig. 4", "smooth curvature", apa_curvature, ("apa-parallel",), SMOOTH),
+        ("Fig. 5", "perpendicular parking", paths_of, ("apa-perpendicular",), ""),
+        ("States", "state machine", None, (), "this system's chart has states of its own: docs/parking.md"),
+    ),
+}
+FIGURES = tuple(PaperFigure(paper, *row) for paper, rows in ROWS.items() for row in rows)

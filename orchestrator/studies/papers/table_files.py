@@ -2,54 +2,23 @@
 
 import csv
 import io
+import re
 
+from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.studies.papers.result import Reproduction, Row
 
 COLUMNS = ("paper", "run", "quantity", "unit", "printed", "here", "difference", "allowed", "verdict", "basis", "why")
 LATEX_SPECIAL = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"} | {
     character: f"\\{character}" for character in "&%$#_{}"
 }
-BIBTEX = {
-    "guo2015": """@article{guo2015,
-  author  = {Guo, Konghui and Li, Hong and Song, Xiaolin and Huang, Jiang},
-  title   = {Study on Path Tracking Control Strategy of Automatic Parking System},
-  journal = {China Journal of Highway and Transport},
-  year    = {2015},
-  volume  = {28},
-  number  = {9},
-  pages   = {106--114},
-  note    = {In Chinese},
-}
-""",
-    "preview": """@article{preview,
-  title   = {Lateral and Longitudinal Fuzzy Control of Intelligent Vehicles on Large-Curvature Roads
-             Based on Dynamic Dual-Point Preview},
-  note    = {In Chinese; authors, journal and year are not in the text at hand},
-}
-""",
-    "zhang2022": """@article{zhang2022,
-  author  = {Zhang, Peng and Gong, Xianxu and Sun, Gang and Liu, Eryuan},
-  title   = {Parallel Parking Simulation Analysis Based on {CarSim}},
-  year    = {2022},
-  number  = {7},
-  doi     = {10.16638/j.cnki.1671-7988.2022.007.003},
-  note    = {Article 1671-7988(2022)07-12-04, in Chinese},
-}
-""",
-    "hsic": """@misc{hsic,
-  author  = {Liu, Xiaohe},
-  title   = {Autonomous Parking System},
-  year    = {2021},
-  note    = {Course paper, Nanjing Normal University, in Chinese},
-}
-""",
-    "apa": """@misc{apa,
-  title   = {{ADAS} Algorithm Design (8): {APA} Algorithm Design},
-  note    = {In Chinese; author and year are not in the text at hand},
-}
-""",
-}
+BIBTEX = LIBRARY / "papers.bib"
 """Entries of the five papers, from what their texts print."""
+ENTRY = re.compile(r"@\w+\{(\w+),\n.*?^\}\n", re.DOTALL | re.MULTILINE)
+
+
+def bibtex_entries() -> dict[str, str]:
+    """Return paper -> its BibTeX entry."""
+    return {found[1]: found[0] for found in ENTRY.finditer(BIBTEX.read_text(encoding="utf-8"))}
 
 
 def verdict_of(row: Row) -> str:

@@ -213,14 +213,9 @@ def without_explained(
     """
     if not echo.is_present:
         return echo
-    sensor = SensorPose(
-        echo.x - echo.range * echo.ux,
-        echo.y - echo.range * echo.uy,
-        echo.ux,
-        echo.uy,
-        math.cos(half_angle),
-        math.sin(half_angle),
-    )
+    x = echo.x - echo.range * echo.ux
+    y = echo.y - echo.range * echo.uy
+    sensor = SensorPose(x, y, echo.ux, echo.uy, math.cos(half_angle), math.sin(half_angle))
     reach = echo.range + params.unexplained
     return EchoObstacle() if range_to_polygons(sensor, obstacles.vertices, reach).distance < reach else echo
 

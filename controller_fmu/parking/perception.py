@@ -110,15 +110,11 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
     readings = memory.perception.cycle.readings
     for number in range(MAX_SENSORS):
         found = measurement_of(number, readings[number], inputs.odometry, sensors, params.mapping.range_noise)
-        sensor = found.sensor
-        status = found.status
-        if status == ReadingStatus.ECHO:
-            slot_filter = update_slot(
-                slot_filter, search.slot, sensor, found.range, found.variance, params.mapping.gate
-            )
+        if found.status == ReadingStatus.ECHO:
+            slot_filter = update_slot(slot_filter, search.slot, found, params.mapping.gate)
         is_silent_one = is_silent(memory.perception.local_map.missed, number)
-        if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO) and not is_silent_one:
-            slot_filter = count_absent(slot_filter, search.slot, sensor, found.range)
+        if found.status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO) and not is_silent_one:
+            slot_filter = count_absent(slot_filter, search.slot, found)
     return slot_filter
 
 

@@ -8,7 +8,13 @@ import pytest
 
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import ReadingStatus, reading_status, sensor_pose
+from controller_fmu.parking.measurement.sensor import (
+    Measurement,
+    ReadingStatus,
+    SensorPose,
+    reading_status,
+    sensor_pose,
+)
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.perception import with_slot_type
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
@@ -46,6 +52,10 @@ def slot_at(dx: float = 0.0, dy: float = 0.0, turn: float = 0.0) -> SlotCandidat
 
 def matrix(slot_filter: SlotFilter) -> Any:
     return np.array(slot_filter.covariance).reshape(STATE_COUNT, STATE_COUNT)
+
+
+def echo_of(sensor: SensorPose, measured: float) -> Measurement:
+    return Measurement(sensor, ReadingStatus.ECHO, measured, 1e-4)
 
 
 VIEWS = [(Pose(1.5, 1.2, 1.2), 11), (Pose(1.4, -1.5, 1.5), 9), (Pose(1.6, -2.5, 1.6), 11), (Pose(1.5, -3.2, 1.57), 5)]
@@ -111,10 +121,10 @@ def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     echo = predict_echo(before, slot, sensor)
     h, p = np.array(echo.gradient), matrix(before)
     s = h @ p @ h + CORRELATED_ECHOES * (1e-4 + FRONT_SIGMA**2)
-    after = update_slot(before, slot, sensor, echo.predicted.distance + 0.05, 1e-4, 9.0)
+    after = update_slot(before, slot, echo_of(sensor, echo.predicted.distance + 0.05), 9.0)
     assert after.state == pytest.approx(tuple(np.array(before.state) + p @ h / s * 0.05))
     assert matrix(after) == pytest.approx(p - np.outer(p @ h, p @ h) / s)
-    far = update_slot(before, slot, sensor, echo.predicted.distance + 1.0, 1e-4, 9.0)
+    far = update_slot(before, slot, echo_of(sensor, echo.predicted.distance + 1.0), 9.0)
     assert far == before, "an echo of something else"
 
 
@@ -128,7 +138,7 @@ def test_cars_along_the_road_contradict_a_slot_across_it(depth: float, absent: i
         vehicle = Pose(1.5, -2.7, 0.5 * math.pi)
         measured = exact_ranges(vehicle, boxes, CAR.ultrasonic)[9]
         sensor = sensor_pose(CAR.ultrasonic.mounts[9], CAR.ultrasonic.half_angle, vehicle)
-        slot_filter = count_absent(slot_filter, slot, sensor, measured)
+        slot_filter = count_absent(slot_filter, slot, echo_of(sensor, measured))
     assert slot_filter.absent == absent
     wide = slot._replace(ahead=slot.ahead._replace(start=6.5))
     for width, kind in (
@@ -157,7 +167,7 @@ def errors_after_drive(seed: int) -> tuple[float, float, float]:
             measured = exact + 0.01 * rng.standard_normal()
             if reading_status(measured, sensors) == ReadingStatus.ECHO:
                 sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, believed)
-                slot_filter = update_slot(slot_filter, slot, sensor, measured, 1e-4, PARAMS.gate)
+                slot_filter = update_slot(slot_filter, slot, echo_of(sensor, measured), PARAMS.gate)
     found = slot_of_filter(slot, slot_filter, OUTLINE)
     turned = believed.heading - true.heading
     c, s = math.cos(turned), math.sin(turned)

@@ -35,11 +35,12 @@ from controller_fmu.parking.slots.row import (
     side_as_member,
 )
 from controller_fmu.parking.slots.slot_filter import begin_slot_filter, is_slot_corner, slot_of_filter
-from modelkit.geometry import Box, Point
+from modelkit.geometry import Box, Point, box_corners, cone_gap, cone_of, orient
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
 
 OUTLINE = vehicle_outline(CAR, 0.95)
+COS, SIN = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
 
 
 def slot_after(
@@ -165,6 +166,28 @@ def test_a_pair_of_cars_that_is_still_being_passed_leaves_the_type_open() -> Non
     assert log_likelihood_ratio(row_of((3.7, 0.6), False)) <= LOG_TEN
 
 
+@pytest.mark.parametrize("half_angle", [26.0, 30.0, 34.0])
+@pytest.mark.parametrize(("depth", "kind"), [(1.8, SlotType.PARALLEL), (4.4, SlotType.PERPENDICULAR)])
+@pytest.mark.parametrize("beside", [0.6, 1.1])
+def test_flanks_beside_a_gap_tell_how_cars_stand(
+    beside: float, depth: float, kind: SlotType, half_angle: float
+) -> None:
+    """Sides that leave the type open: 3.6 m are a small car along the road as well as two cars across it."""
+    boxes = [orient(Box(x, -0.5 * depth, 0.0, 3.6, depth)) for x in (-1.8, 9.2)]
+    rays = []
+    for number in range(MAX_RAYS):
+        at = Point(-4.0 + 0.2 * number, beside)
+        cone = cone_of(at, -0.5 * math.pi, math.radians(half_angle))
+        measured = min([5.0, *(cone_gap(cone, box, box_corners(box)) for box in boxes)])
+        rays.append(Ray(SensorPose(at.x, at.y, 0.0, -1.0, COS, SIN), measured, measured < 5.0))
+    members = [RowMember(x, x + 3.6, 2.0, True, True, 2.0, 2.0, gap_evidence=3.5) for x in (7.4, -3.6)]
+    row = SlotRow(Pose(0.0, 2.0, 0.0), -1.0, (*members, *(RowMember(),) * (MAX_MEMBERS - 2)), 2)
+    found = find_slot(row, (Landmark(),) * MAX_LANDMARKS, tuple(rays), OUTLINE, SlotParams(), MappingParams())
+    assert abs(log_likelihood_ratio(found._replace(flank_ratio=0.0))) < 0.5 * LOG_TEN
+    assert found.type == kind
+    assert abs(found.flank_ratio) >= LOG_TEN
+
+
 @pytest.mark.parametrize(("bays", "bay"), [(1, 2.3), (1, 2.9), (2, 2.5), (2, 2.9), (3, 2.4), (3, 2.8)])
 @pytest.mark.parametrize(("of_a", "of_b"), [(1.6, 1.6), (2.0, 1.6), (2.0, 2.0)])
 def test_the_last_of_several_empty_bays_is_found_by_its_cars(bays: int, bay: float, of_a: float, of_b: float) -> None:
@@ -202,7 +225,6 @@ def test_a_car_that_is_still_being_passed_is_no_pillar() -> None:
     assert not is_too_short_for_car(member.start_length)
 
 
-COS, SIN = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
 FREE_RAYS = tuple(Ray(SensorPose(-4.0 + 0.1 * n, 0.5, 0.0, -1.0, COS, SIN), 5.0) for n in range(MAX_RAYS))
 """Of a sensor on the road that measured nothing nearer than 5 m."""
 

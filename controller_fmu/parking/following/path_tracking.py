@@ -106,14 +106,8 @@ def track_path(progress: PathProgress, pose: Pose, speed: float, context: Follow
     here = reference_at(progress.path, progress.segment, remaining, context)
     curvature = reference_at(progress.path, progress.segment, soon, context).curvature
     lateral = _recoverable(error.lateral - here.lateral, curvature, context)
-    angle = angle_back(
-        TrackingError(lateral, error.heading - here.heading),
-        curvature,
-        direction,
-        law.k1,
-        law.k2,
-        context.car.wheelbase,
-    )
+    off = TrackingError(lateral, error.heading - here.heading)
+    angle = angle_back(off, curvature, direction, law.k1, law.k2, context.car.wheelbase)
     upcoming = upcoming_stop(progress.path, progress.segment, remaining, context)
     if steers_for_next(upcoming, context):
         angle = math.atan(context.car.wheelbase * upcoming.standstill.next_curvature)

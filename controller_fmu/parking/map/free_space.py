@@ -21,6 +21,7 @@ class Ray(NamedTuple):
 
     sensor: SensorPose = SensorPose()
     range: float = 0.0
+    is_echo: bool = False
 
 
 class FreeSpace(NamedTuple):

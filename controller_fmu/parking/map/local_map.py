@@ -191,7 +191,7 @@ def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> boo
 
 def _with_ray(free_space: FreeSpace, measurement: Measurement) -> FreeSpace:
     """Return free space with the ray of a flank's front sensor; other sensors add none."""
-    ray = Ray(measurement.sensor, measurement.range)
+    ray = Ray(measurement.sensor, measurement.range, measurement.status == ReadingStatus.ECHO)
     if measurement.number == FRONT_RIGHT_SIDE and is_next_ray(free_space.right[-1], ray):
         return free_space._replace(right=free_space.right[1:] + (ray,))
     if measurement.number == FRONT_LEFT_SIDE and is_next_ray(free_space.left[-1], ray):

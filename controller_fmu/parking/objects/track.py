@@ -133,8 +133,6 @@ def with_expectation(
 
 def closing_speed(track: ObjectTrack) -> float:
     """Return how fast [m/s] an unexplained object of a confirmed track approaches by itself, two sigma above 0."""
-    if track.unexplained == 0 or track.confirmations < MIN_CONFIRMATIONS:
-        return 0.0
-    if track.rate > 0.0 or track.rate * track.rate < 4.0 * track.vv:
-        return 0.0
-    return -track.rate
+    is_confirmed = track.unexplained > 0 and track.confirmations >= MIN_CONFIRMATIONS
+    approaches = track.rate <= 0.0 and track.rate * track.rate >= 4.0 * track.vv
+    return -track.rate if is_confirmed and approaches else 0.0

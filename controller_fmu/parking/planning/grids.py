@@ -153,8 +153,7 @@ def _relax(work: PlanningWork, cell: int, grid: SearchGrid) -> None:
             if before >= 0.0 and distance < before - 1e-3:
                 work.cost_to_go[other] = distance
                 if work.cost_to_go_next[other] == NOT_QUEUED:
-                    number = math.floor(distance / grid.cell)
-                    number = number if number < BUCKET_COUNT else BUCKET_COUNT - 1
+                    number = min(math.floor(distance / grid.cell), BUCKET_COUNT - 1)
                     work.cost_to_go_next[other] = work.bucket[number]
                     work.bucket[number] = other
 

@@ -200,18 +200,9 @@ def _numbers(request: PlanningRequest) -> tuple[float, ...]:
     goal = request.goal
     car = request.car
     return (
-        start.x,
-        start.y,
-        start.heading,
-        goal.x,
-        goal.y,
-        goal.heading,
-        car.centre_ahead,
-        car.half_length,
-        car.half_width,
-        car.max_curvature,
-        request.margin,
-        float(request.max_cusps),
+        (start.x, start.y, start.heading, goal.x, goal.y, goal.heading)
+        + (car.centre_ahead, car.half_length, car.half_width, car.max_curvature)
+        + (request.margin, float(request.max_cusps))
     )
 
 

@@ -111,9 +111,8 @@ def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
         work.node_state[node] = NODE_CLOSED
         return True
     crowd = problem.stage.resolution.crowding_cost * work.crowding[region_of(pose, problem)]
-    bucket = bucket_of(
-        work.node_cost[node] + problem.stage.resolution.heuristic_weight * work.node_cost_estimate[node] + crowd
-    )
+    weight = problem.stage.resolution.heuristic_weight
+    bucket = bucket_of(work.node_cost[node] + weight * work.node_cost_estimate[node] + crowd)
     if bucket <= work.counts[PlanCount.LOWEST_BUCKET] + 1:
         return False
     push_bucket(work, node, bucket)

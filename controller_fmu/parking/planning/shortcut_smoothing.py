@@ -13,6 +13,7 @@ from controller_fmu.parking.planning.work import (
     PlanValue,
     discard_word,
     move_segments,
+    pose_at,
     set_segment,
     word_length,
 )
@@ -90,11 +91,6 @@ def smooth(work: PlanningWork, problem: SearchProblem) -> bool:
     if replaced:
         work.counts[PlanCount.HAS_GAINED] = 1
     return True
-
-
-def pose_at(work: PlanningWork, segment: int) -> Pose:
-    """Return where a segment of the path begins."""
-    return Pose(work.segment_x[segment], work.segment_y[segment], work.segment_heading[segment])
 
 
 def joint_cost(distance: float, k: float, next_distance: float, next_k: float, problem: SearchProblem) -> float:

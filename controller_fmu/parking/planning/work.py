@@ -148,15 +148,17 @@ def set_segment(work: PlanningWork, segment: int, pose: Pose, distance: float, k
     work.segment_heading[segment] = pose.heading
 
 
+def pose_at(work: PlanningWork, segment: int) -> Pose:
+    """Return where a segment of the path begins."""
+    return Pose(work.segment_x[segment], work.segment_y[segment], work.segment_heading[segment])
+
+
 def move_segments(work: PlanningWork, start: int, count: int, by: int) -> None:
     """Move ``count`` segments of the path from ``start`` on by some places."""
     for number in range(count):
         segment = start + (number if by < 0 else count - 1 - number)
-        work.segment_length[segment + by] = work.segment_length[segment]
-        work.segment_curvature[segment + by] = work.segment_curvature[segment]
-        work.segment_x[segment + by] = work.segment_x[segment]
-        work.segment_y[segment + by] = work.segment_y[segment]
-        work.segment_heading[segment + by] = work.segment_heading[segment]
+        distance = work.segment_length[segment]
+        set_segment(work, segment + by, pose_at(work, segment), distance, work.segment_curvature[segment])
 
 
 def clear_tree(work: PlanningWork) -> None:

@@ -2,8 +2,8 @@
 
 Type hypotheses, compared by log-likelihood: cars that stand parallel show a side of about 4.4 m, cars that stand
 perpendicular a front of about 1.8 m; a side not seen in full says only how long it is at least. A kerb or wall at car
-width behind the row speaks for parallel. Where the vehicle fits both ways the likelier one counts; a gap too short to
-park along is one only if that is ten times likelier.
+width behind the row speaks for parallel; where nothing is, the flanks of both cars show how deep they are. Where the
+vehicle fits both ways the likelier one counts; a gap too short to park along is one only if that is ten times likelier.
 """
 
 import math
@@ -26,6 +26,7 @@ from controller_fmu.parking.map.params import (
     CAR_WIDTH_SIGMA,
     MappingParams,
 )
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predict_range_to_segment
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import (
     MAX_MEMBERS,
@@ -39,6 +40,7 @@ from controller_fmu.parking.slots.row import (
     is_too_short_for_car,
 )
 from modelkit.geometry import Point
+from modelkit.maths import clamp
 
 UNKNOWN_DEPTH = 50.0
 """Depth [m] of a gap in which nothing was detected."""
@@ -95,6 +97,8 @@ class SlotCandidate(NamedTuple):
     is_external: bool = False
     missing: float = 0.0
     """Length [m] along the row that it lacks."""
+    flank_ratio: float = 0.0
+    """Log-likelihood ratio of how deep both neighbours are: parallel over perpendicular."""
 
 
 def find_slot(
@@ -111,12 +115,12 @@ def find_slot(
     """
     found = SlotCandidate()
     if slot.open_ended and row.used > 0:
-        beside = _candidate(_with_end(row, outline, slot), 0, landmarks, outline, slot, params)
+        beside = _judge(_gap(_with_end(row, outline, slot), 0, landmarks, outline, params), rays, outline, slot)
         is_free_there = beside.type == SlotType.PERPENDICULAR and is_observed_free(beside, rays)
         found = beside if is_free_there else found
     for number in range(MAX_MEMBERS - 1):
         if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
-            candidate = _candidate(row, number, landmarks, outline, slot, params)
+            candidate = _judge(_gap(row, number, landmarks, outline, params), rays, outline, slot)
             if candidate.type != SlotType.NONE and is_observed_free(candidate, rays):
                 better = candidate.reason == Reason.NONE or found.type == SlotType.NONE
                 found = candidate if better else found
@@ -136,28 +140,33 @@ def _with_end(row: SlotRow, outline: VehicleOutline, slot: SlotParams) -> SlotRo
     )
 
 
-def _candidate(
-    row: SlotRow,
-    number: int,
-    landmarks: tuple[Landmark, ...],
-    outline: VehicleOutline,
-    slot: SlotParams,
-    params: MappingParams,
+def _gap(
+    row: SlotRow, number: int, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
 ) -> SlotCandidate:
-    """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
+    """Return the gap behind the member ``number`` of a row, of no type yet; without a row: too narrow for anything."""
     behind = row.members[min(number + 1, MAX_MEMBERS - 1)]
     found = SlotCandidate(row=row, behind=behind, ahead=row.members[number])
     found = _between_posts(found, landmarks, 2.0 * outline.half_width, params)
-    width = found.ahead.start - found.behind.end
-    if width < 2.0 * outline.half_width:
+    if found.ahead.start - found.behind.end < 2.0 * outline.half_width:
         return SlotCandidate()
     found = found._replace(front=_front_of(found, number, outline.half_width))
-    found = found._replace(depth=gap_depth(found, landmarks, outline, params))
+    return found._replace(depth=gap_depth(found, landmarks, outline, params))
+
+
+def _judge(found: SlotCandidate, rays: tuple[Ray, ...], outline: VehicleOutline, slot: SlotParams) -> SlotCandidate:
+    """Return a gap typed and judged."""
+    if found.row.used == 0:
+        return found
+    width = found.ahead.start - found.behind.end
+    if found.depth >= UNKNOWN_DEPTH:
+        behind_ratio = _flank_ratio(found, found.behind.end, found.behind.end_front, rays)
+        ahead_ratio = _flank_ratio(found, found.ahead.start, found.ahead.start_front, rays)
+        found = found._replace(flank_ratio=behind_ratio + ahead_ratio)
     least_length = 2.0 * outline.half_length + slot.room_along
     least_width = 2.0 * outline.half_width + slot.room_across
     fits_parallel = width >= least_length
     fits_perpendicular = width >= least_width
-    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else LOG_TEN) and row.slope == 0.0
+    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else LOG_TEN) and found.row.slope == 0.0
     parallel = parallel if slot.wanted == SlotKind.NONE else slot.wanted == SlotKind.PARALLEL
     fits = fits_parallel if parallel else fits_perpendicular
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
@@ -167,7 +176,7 @@ def _candidate(
     elif found.depth < needed:
         reason = Reason.SLOT_TOO_SHALLOW
     kind = SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR
-    leads_on = row.slope * row.side > 0.0
+    leads_on = found.row.slope * found.row.side > 0.0
     is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
     missing = max((least_length if parallel else least_width) - width, 0.0)
     return found._replace(type=kind, reason=reason, is_nose_in=is_nose_in, missing=missing)
@@ -241,7 +250,32 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
                 ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, member.gap_evidence)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * LOG_TEN
-    return ratio
+    return ratio + candidate.flank_ratio
+
+
+def _flank_ratio(found: SlotCandidate, along: float, front: float, rays: tuple[Ray, ...]) -> float:
+    """Return the log-likelihood ratio of the car whose corner is ``along`` a row, its ``front`` across it [m].
+
+    Its flank returns an echo where the cone's boundary meets it, by half a car's width: the car is at least so deep as
+    the range tells, however wide the cone. A ray that goes on shows that it is not. One in ten is of something else.
+    """
+    corner = row_point(found.row, along, front)
+    end = row_point(found.row, along, front + CAR_LENGTH)
+    ratio = 0.0
+    for ray in rays:
+        flank = predict_range_to_segment(ray.sensor, corner, end)
+        beyond = ray.range - flank.distance
+        if flank.origin == EchoOrigin.CONE_EDGE and beyond > -0.5 * CAR_WIDTH:
+            is_passed = beyond > 0.5 * CAR_WIDTH
+            at = point_to_frame(ray.sensor.x, ray.sensor.y, found.row.frame)
+            reached = flank.distance if is_passed else ray.range
+            across = reached * reached - (at.x - along) * (at.x - along)
+            deep = math.sqrt(max(across, 0.0)) + found.row.side * at.y - front
+            sense = -1.0 if is_passed else 1.0
+            likelihood = length_log_likelihood(sense * deep, False, sense * CAR_WIDTH, CAR_WIDTH_SIGMA)
+            likelihood -= length_log_likelihood(sense * deep, False, sense * CAR_LENGTH, CAR_LENGTH_SIGMA)
+            ratio += clamp(likelihood, -LOG_TEN, LOG_TEN) if is_passed or ray.is_echo else 0.0
+    return clamp(ratio, -2.0 * LOG_TEN, 2.0 * LOG_TEN)
 
 
 def side_log_likelihood(length: float, is_complete: bool, car: float, sigma: float, evidence: float) -> float:

@@ -85,9 +85,8 @@ def _between_corners(given: ExternalSlot, vehicle: Pose) -> SlotCandidate:
 def has_passed_external(candidate: SlotCandidate, sensor_x: float, vehicle: Pose) -> bool:
     """Return whether the side sensor, ``sensor_x`` [m] ahead of the rear axle, has passed both corners of a slot."""
     at = point_to_frame(vehicle.x, vehicle.y, candidate.row.frame)
-    return at.x + sensor_x * math.cos(vehicle.heading - candidate.row.frame.heading) > (
-        candidate.ahead.start + AT_THE_ROAD
-    )
+    sensor = at.x + sensor_x * math.cos(vehicle.heading - candidate.row.frame.heading)
+    return sensor > candidate.ahead.start + AT_THE_ROAD
 
 
 def external_pose(given: ExternalSlot, outline: VehicleOutline, vehicle: Pose) -> Pose:

@@ -20,7 +20,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     direction_of,
     predict_range_to_segment,
 )
-from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
+from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, in_field_of_view
 from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.correction import correction_gate
 from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow, is_too_short_for_car
@@ -82,20 +82,18 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
         end.x * into_x + end.y * into_y,
     )
     front = FRONT_SIGMA * FRONT_SIGMA
-    behind = slot.behind.end_sigma * slot.behind.end_sigma + front
-    ahead = slot.ahead.start_sigma * slot.ahead.start_sigma + front
     cos = math.cos(slot.row.frame.heading)
     sin = math.sin(slot.row.frame.heading)
-    behind_xy = (behind - front) * cos * sin
-    ahead_xy = (ahead - front) * cos * sin
-    covariance = (
-        (behind * cos * cos + front * sin * sin, behind_xy, 0.0, 0.0, 0.0, 0.0, 0.0)
-        + (behind_xy, behind * sin * sin + front * cos * cos, 0.0, 0.0, 0.0, 0.0, 0.0)
-        + (0.0, 0.0, _heading_variance(slot.behind, slot.behind.end_length), 0.0, 0.0, 0.0, 0.0)
-        + (0.0, 0.0, 0.0, ahead * cos * cos + front * sin * sin, ahead_xy, 0.0, 0.0)
-        + (0.0, 0.0, 0.0, ahead_xy, ahead * sin * sin + front * cos * cos, 0.0, 0.0)
-        + (0.0, 0.0, 0.0, 0.0, 0.0, _heading_variance(slot.ahead, slot.ahead.start_length), 0.0)
-        + (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, END_SIGMA * END_SIGMA)
+    behind = (cos * slot.behind.end_sigma, sin * slot.behind.end_sigma, 0.0, 0.0, 0.0, 0.0, 0.0)
+    ahead = (0.0, 0.0, 0.0, cos * slot.ahead.start_sigma, sin * slot.ahead.start_sigma, 0.0, 0.0)
+    behind_turn = _heading_variance(slot.behind, slot.behind.end_length)
+    ahead_turn = _heading_variance(slot.ahead, slot.ahead.start_length)
+    diagonal = (front, front, behind_turn, front, front, ahead_turn, END_SIGMA * END_SIGMA)
+    covariance = tuple(
+        behind[number // STATE_COUNT] * behind[number % STATE_COUNT]
+        + ahead[number // STATE_COUNT] * ahead[number % STATE_COUNT]
+        + (diagonal[number % STATE_COUNT] if number // STATE_COUNT == number % STATE_COUNT else 0.0)
+        for number in range(STATE_COUNT * STATE_COUNT)
     )
     return SlotFilter(state, covariance, into_x, into_y, True)
 
@@ -155,11 +153,9 @@ def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params
     return slot_filter._replace(covariance=covariance)
 
 
-def update_slot(
-    slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose, measured: float, variance: float, gate: float
-) -> SlotFilter:
-    """Return the filter after an echo at ``measured`` [m] of ``variance`` [m2], if within the ``gate`` (chi-square)."""
-    echo = predict_echo(slot_filter, slot, sensor)
+def update_slot(slot_filter: SlotFilter, slot: SlotCandidate, reading: Measurement, gate: float) -> SlotFilter:
+    """Return the filter after the echo of a reading, if that is within the ``gate`` [1] (chi-square)."""
+    echo = predict_echo(slot_filter, slot, reading.sensor)
     if not echo.is_known:
         return slot_filter
     h = echo.gradient
@@ -168,10 +164,10 @@ def update_slot(
     prior = 0.0
     for number in range(STATE_COUNT):
         prior += h[number] * gains[number]
-    noise = CORRELATED_ECHOES * (variance + FRONT_SIGMA * FRONT_SIGMA)
+    noise = CORRELATED_ECHOES * (reading.variance + FRONT_SIGMA * FRONT_SIGMA)
     s = prior + noise
-    innovation = measured - echo.predicted.distance
-    if innovation * innovation > gate * (prior + variance + FRONT_SIGMA * FRONT_SIGMA):
+    innovation = reading.range - echo.predicted.distance
+    if innovation * innovation > gate * (prior + reading.variance + FRONT_SIGMA * FRONT_SIGMA):
         return slot_filter
     state = tuple(slot_filter.state[number] + gains[number] / s * innovation for number in range(STATE_COUNT))
     covariance = tuple(
@@ -181,24 +177,24 @@ def update_slot(
     return slot_filter._replace(state=state, covariance=covariance)
 
 
-def count_absent(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPose, measured: float) -> SlotFilter:
-    """Return the filter after a reading of ``measured`` [m], with those counted that pass through a neighbour's flank.
+def count_absent(slot_filter: SlotFilter, slot: SlotCandidate, reading: Measurement) -> SlotFilter:
+    """Return the filter after a reading, with those counted that pass through a neighbour's flank.
 
     Beside a perpendicular slot cars are as deep as they are long. Those along the road are no deeper than wide: where
     no corner of such a car is in view an echo tells which they are.
     """
     if slot.type != SlotType.PERPENDICULAR:
         return slot_filter
-    echo = predict_echo(slot_filter, slot, sensor)
+    echo = predict_echo(slot_filter, slot, reading.sensor)
     state = slot_filter.state
     x = echo.predicted.x - 0.5 * (state[0] + state[AHEAD_OFFSET])
     y = echo.predicted.y - 0.5 * (state[1] + state[AHEAD_OFFSET + 1])
     deep = x * slot_filter.into_x + y * slot_filter.into_y
     beyond_width = deep - CAR_WIDTH - 2.0 * CAR_WIDTH_SIGMA
-    tells = beyond_width * sensor.cone_cos > CONE_SPREAD * sensor.cone_sin * echo.predicted.distance
+    tells = beyond_width * reading.sensor.cone_cos > CONE_SPREAD * reading.sensor.cone_sin * echo.predicted.distance
     if not echo.is_known or not tells or deep > CAR_LENGTH - 2.0 * CAR_LENGTH_SIGMA:
         return slot_filter
-    beyond = measured - echo.predicted.distance
+    beyond = reading.range - echo.predicted.distance
     if beyond > 0.5 * CAR_WIDTH:
         return slot_filter._replace(absent=slot_filter.absent + 1)
     return slot_filter._replace(absent=0) if beyond < CAR_WIDTH_SIGMA else slot_filter

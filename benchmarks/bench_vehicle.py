@@ -2,7 +2,7 @@
 
 All in one process and thread, in turn, medians of CPU time. The first table steps bodies alone;
 CommonRoad gives derivatives only, which an integrator calls once to four times a step. The second table
-steps the whole vehicle (driver, steering, drive, sensors, outputs) by 10 ms, bodies with mass by 1 ms.
+steps the whole vehicle (driver, steering, drive, sensors, outputs) by 10 ms, bodies with mass by their default.
 The third drives a whole case with native FMUs.
 """
 

@@ -9,7 +9,7 @@ from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, target_speed, watch
 from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, attainable_speed, obey, press, shift, target_gear
-from vehicle_fmu.effort import Effort
+from vehicle_fmu.effort import Effort, mean_effort
 from vehicle_fmu.interface import Body, DriverParams, ManualInput, VehicleInput, VehicleParams
 from vehicle_fmu.manual_driving import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.odometry import OdometryState, reckon
@@ -69,11 +69,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     state = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
     steering = state.steering
-    wheel = state.steering_wheel_angle
-    if state.time_ns * 1e-9 < params.steering.fault_time:
-        wheel = turn_steering_wheel(
-            wheel, steering.lagged, params.car.steering, params.steering.standstill_rate, h, state.speed
-        )
+    wheel = _turn_wheel(state, params, h)
     play = take_up_play(steering.play, wheel, params.steering.backlash)
     state = state._replace(driver=driver, selector=selector)
     angles = (steering.play / params.car.steering.ratio, play / params.car.steering.ratio)
@@ -92,7 +88,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         steering_wheel_angle=wheel,
         distance=state.distance + 0.5 * h * abs(speed + state.speed),
         brake_pedal=1.0 if faulty else _brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
-        steering=SteeringState(steering.lagged, play),
+        steering=state.steering._replace(play=play),
         odometry=odometry,
     )
 
@@ -111,7 +107,16 @@ def _steer(state: CarState, inputs: VehicleInput, released: bool, params: Vehicl
         request = line[0]
     if passes:
         return state._replace(steering=pass_request(state.steering, request, params.steering, state.time_ns, next_ns))
-    return state._replace(steering=SteeringState(held, state.steering.play))
+    return state._replace(steering=state.steering._replace(lagged=held))
+
+
+def _turn_wheel(state: CarState, params: VehicleParams, h: float) -> float:
+    """Return the steering-wheel angle [rad] ``h`` [s] later; a stuck wheel stays."""
+    wheel = state.steering_wheel_angle
+    if state.time_ns * 1e-9 >= params.steering.fault_time:
+        return wheel
+    rate = params.steering.standstill_rate
+    return turn_steering_wheel(wheel, state.steering.lagged, params.car.steering, rate, h, state.speed)
 
 
 def _go(
@@ -133,7 +138,7 @@ def _go(
         pedals = obey(state.pedals, inputs.force_request, rolling, params.drive, h)
     else:
         pedals = press(state.pedals, target, rolling, params.chassis.mass, params.drive, h)
-    return _push(state, pedals, angles, params, h)
+    return _push(state, pedals, params, h)
 
 
 def _tread(
@@ -142,8 +147,8 @@ def _tread(
     """Return the car ``h`` [s] later under a person's feet."""
     pedals = tread(state.pedals, manual, Rolling(state.speed, state.selector.gear), params.drive, h)
     if params.body != Body.KINEMATIC:
-        return _push(state, pedals, angles, params, h)
-    speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
+        return _push(state, pedals, params, h)
+    speed = roll(state.speed, _at_wheels(pedals.effort, state.selector.gear, params), params.chassis, h)
     state = state._replace(pedals=pedals)
     return _roll(state, speed, angles, params, h)
 
@@ -155,18 +160,26 @@ def _roll(state: CarState, speed: float, angles: tuple[float, float], params: Ve
     return state._replace(pose=pose, speed=speed, rolled_speed=speed)
 
 
-def _push(state: CarState, pedals: Pedals, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
-    """Return the car ``h`` [s] later, of a body with mass under the forces of ``pedals``."""
-    effort = _at_wheels(pedals, state.selector.gear, params)
-    state = state._replace(body=push_body(state.body, 0.5 * (angles[0] + angles[1]), effort, params, h))
+def _push(state: CarState, pedals: Pedals, params: VehicleParams, h: float) -> CarState:
+    """Return the car ``h`` [s] later, of a body with mass; its error is of second order in ``h``.
+
+    The mean of the forces of the old and the new pedals acts on it. The slip of the tyres is that of the old motion:
+    for it the front wheels have their mean angle over half a step before and after.
+    """
+    steering = state.steering
+    early = take_up_play(steering.play, _turn_wheel(state, params, 0.25 * h), params.steering.backlash)
+    late = take_up_play(steering.play, _turn_wheel(state, params, 0.75 * h), params.steering.backlash)
+    angle = 0.5 * (steering.late + early) / params.car.steering.ratio
+    effort = _at_wheels(mean_effort(state.pedals.effort, pedals.effort), state.selector.gear, params)
+    state = state._replace(body=push_body(state.body, angle, effort, params, h), steering=steering._replace(late=late))
     motion = motion_of(state.body, params.body)
     rolled = wheel_speed(state.body, params.body, params.double_track.hub.radius)
     return state._replace(pose=motion.pose, speed=motion.speed_x, rolled_speed=rolled, pedals=pedals)
 
 
-def _at_wheels(pedals: Pedals, gear: int, params: VehicleParams) -> Effort:
+def _at_wheels(effort: Effort, gear: int, params: VehicleParams) -> Effort:
     """Return what reaches the wheels: in park they are locked."""
-    return Effort(brake=params.drive.brake_force_limit) if gear == Gear.PARK else pedals.effort
+    return Effort(brake=params.drive.brake_force_limit) if gear == Gear.PARK else effort
 
 
 def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, params: DriverParams) -> float:

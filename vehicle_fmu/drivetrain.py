@@ -45,6 +45,8 @@ class Pedals(NamedTuple):
     effort: Effort = Effort()
     stopping: float = 0.0
     """Time [s] since the aim became to stand."""
+    error: float = 0.0
+    """Speed error [m/s] before the last step."""
 
 
 class Rolling(NamedTuple):
@@ -96,14 +98,15 @@ def press(pedals: Pedals, target: float, car: Rolling, mass: float, p: DrivePara
     if reference == 0.0 and target == 0.0:
         brake = mass * _stopping_deceleration(car.speed, pedals.stopping, p)
         return Pedals(effort=lag(pedals.effort, idle, brake, p, h), stopping=pedals.stopping + h)
-    error = reference - car.speed
-    push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * pedals.integral
+    error = pedals.reference - car.speed
+    midway = error + 0.5 * (error - pedals.error)
+    push = (reference - pedals.reference) / h + p.speed_gain * midway + p.speed_integral * pedals.integral
     force = mass * push - idle
     integral = pedals.integral
     if abs(force) < p.drive_force_limit:
-        integral = clamp(integral + h * error, -p.integral_limit, p.integral_limit)
+        integral = clamp(integral + h * midway, -p.integral_limit, p.integral_limit)
     ahead = 1.0 if reference > 0.0 else -1.0
-    return Pedals(reference, integral, _split(pedals.effort, force, idle, ahead, p, h))
+    return Pedals(reference, integral, _split(pedals.effort, force, idle, ahead, p, h), error=error)
 
 
 def obey(pedals: Pedals, force: float, car: Rolling, p: DriveParams, h: float) -> Pedals:
@@ -140,10 +143,14 @@ def creep(car: Rolling, p: DriveParams) -> float:
 
 
 def lag(effort: Effort, drive: float, brake: float, p: DriveParams, h: float) -> Effort:
-    """Return the forces [N] ``h`` [s] later on their way to those asked for, within what there is."""
+    """Return the forces [N] ``h`` [s] later on their way to those asked for, within what there is.
+
+    Trapezoidal rule; a lag below half the step counts as that.
+    """
     wanted = clamp(drive, -p.drive_force_limit, p.drive_force_limit)
     pressed = clamp(brake, 0.0, p.brake_force_limit)
+    half = 0.5 * h
     return Effort(
-        effort.drive + (wanted - effort.drive) * h / (p.drive_lag + h),
-        effort.brake + (pressed - effort.brake) * h / (p.brake_lag + h),
+        effort.drive + (wanted - effort.drive) * h / (max(p.drive_lag, half) + half),
+        effort.brake + (pressed - effort.brake) * h / (max(p.brake_lag, half) + half),
     )

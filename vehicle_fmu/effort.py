@@ -8,3 +8,8 @@ class Effort(NamedTuple):
 
     drive: float = 0.0
     brake: float = 0.0
+
+
+def mean_effort(first: Effort, second: Effort) -> Effort:
+    """Return the mean of two efforts."""
+    return Effort(0.5 * (first.drive + second.drive), 0.5 * (first.brake + second.brake))

@@ -209,4 +209,4 @@ class VehicleParams(NamedTuple):
     ultrasonic: UltrasonicParams = UltrasonicParams()
     odometry: OdometryParams = OdometryParams()
     largest_step: Annotated[float, Signal("s", "longest internal integration step", 1e-4, 0.1, HOUSE)] = 0.005
-    body_step: Annotated[float, Signal("s", "longest internal step of the bodies with mass", 1e-5, 0.02, HOUSE)] = 0.001
+    body_step: Annotated[float, Signal("s", "longest internal step of the bodies with mass", 1e-5, 0.02, HOUSE)] = 0.005

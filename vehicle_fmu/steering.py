@@ -24,6 +24,8 @@ class SteeringState(NamedTuple):
     """Request after dead time and lag [rad]."""
     play: float = 0.0
     """Steering-wheel angle [rad] that the front wheels follow: the wheel's, less the backlash."""
+    late: float = 0.0
+    """The same a quarter of a step ago, of a body with mass."""
 
 
 def turn_steering_wheel(
@@ -55,7 +57,7 @@ def pass_request(
     if params.lag > 0.0:
         share = 1.0 - math.exp(-(end_ns - start_ns) * 1e-9 / params.lag)
     lagged = state.lagged + share * (request - state.lagged) if share < 1.0 else request
-    return SteeringState(lagged, state.play)
+    return state._replace(lagged=lagged)
 
 
 def take_up_play(play: float, angle: float, backlash: float) -> float:

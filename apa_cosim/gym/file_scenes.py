@@ -27,7 +27,6 @@ from orchestrator.inputs.scenario.tpcap import read_tpcap
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.benchmark.parkbench import read_parkbench
 from orchestrator.studies.parking.cases import BODY
-from orchestrator.studies.parking.world.study import BODY_STEP
 from orchestrator.studies.sweep.disturbed import numbers_for
 from orchestrator.studies.sweep.job import Chunk, arrays, make_job, truths
 from orchestrator.studies.sweep.study.design import Design
@@ -114,7 +113,7 @@ def _policy_scenario(scenario: Scenario, body: str, stop_time: float, pedals: bo
         title=scenario.title,
         source=scenario.source,
         stop_time=stop_time,
-        vehicle={**scenario.vehicle, **_edges(scenario), "body": BODY[body], "body_step": BODY_STEP},
+        vehicle={**scenario.vehicle, **_edges(scenario), "body": BODY[body]},
         controller={**own, "system": int(PolicySystem.POLICY), "action.pedals": pedals},
         target=scenario.target,
         slot=scenario.slot,

@@ -18,7 +18,7 @@ from orchestrator.studies.parking.cases import KINDS as KIND_NAMES
 from orchestrator.studies.parking.study import GBT_SETS
 from orchestrator.studies.parking.world.factors import FACTORS, NEIGHBOURS, SLOT
 from orchestrator.studies.parking.world.scene import KINDS, parameters
-from orchestrator.studies.parking.world.study import BODY_STEP, limits_beside_neighbours
+from orchestrator.studies.parking.world.study import limits_beside_neighbours
 from orchestrator.studies.parking.world.study import scenario as world_scenario
 from orchestrator.studies.sweep.study.space import Factor
 
@@ -56,7 +56,7 @@ def slot_scenario(kind: int, stop_time: float) -> Scenario:
     return Scenario(
         name=KIND_NAMES[number],
         stop_time=stop_time,
-        vehicle={"odometry.ideal": False, "body_step": BODY_STEP},
+        vehicle={"odometry.ideal": False},
         controller={"system": int(PolicySystem.POLICY)},
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),

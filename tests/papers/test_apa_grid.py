@@ -73,7 +73,8 @@ def test_every_run_ends_parked_or_failed_with_its_reason(results: list[GridRun])
 
 @needs_compiler
 def test_all_but_two_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
-    assert sum(item.is_gbt for item in results) >= 0.98 * len(results)
+    """Of the few runs of each change all but one."""
+    assert sum(not item.is_gbt for item in results) <= max(1.0, 0.02 * len(results))
 
 
 @needs_compiler

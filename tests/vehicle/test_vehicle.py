@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modelkit.variables import constructor, flatten, variables, with_values
-from modelkit.vocabulary import Gear, Prompt, VehicleFault
+from modelkit.vocabulary import Gear, Pose, Prompt, VehicleFault
 from vehicle_fmu import MODEL
 from vehicle_fmu.interface import Body, VehicleInput, VehicleOutput, VehicleParams
 
@@ -66,6 +66,27 @@ def test_the_communication_step_does_not_matter(body: int) -> None:
     ends = [drive(car, prompted(Prompt.FORWARD, 3.0), 4.0, step_ns=ns)[1].pose for ns in (10_000_000, 50_000_000)]
     assert ends[0].x == pytest.approx(ends[1].x, abs=1e-9)
     assert ends[0].y == pytest.approx(ends[1].y, abs=1e-9)
+
+
+def _stop_and_go(body: int, body_step: float) -> list[Pose]:
+    """Return the poses while the car goes ahead, stops and reverses, its wheel always turning."""
+    car = params(body=body, body_step=body_step)
+    state, _ = MODEL.initialize(car)
+    poses = []
+    for n in range(500):
+        t = 0.01 * n
+        speed = 0.8 if t < 2.0 else -0.8 if t > 3.0 else 0.0
+        inputs = VehicleInput(6.0 * math.sin(0.9 * t), True, speed_control_active=True, speed_request=speed)
+        state, out = step(state, inputs, car, STEP_NS)
+        poses.append(out.pose)
+    return poses
+
+
+@pytest.mark.parametrize("body", [Body.SINGLE_TRACK, Body.DOUBLE_TRACK])
+def test_the_default_step_is_accurate_to_a_third_of_a_millimetre_and_a_tenth_of_a_milliradian(body: int) -> None:
+    pairs = list(zip(_stop_and_go(body, VehicleParams().body_step), _stop_and_go(body, 0.0005), strict=True))
+    assert max(math.dist(a[:2], b[:2]) for a, b in pairs) < 3e-4
+    assert max(abs(a.heading - b.heading) for a, b in pairs) < 1e-4
 
 
 @pytest.mark.parametrize("body", BODIES)

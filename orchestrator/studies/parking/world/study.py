@@ -41,8 +41,6 @@ from orchestrator.studies.sweep.study.study import Study
 from orchestrator.studies.sweep.table import Table
 
 STOP_TIME = 150.0
-BODY_STEP = 0.0025
-"""Internal steps [s] of the bodies with mass: top speeds are those of 1 ms to 2 mm/s, in half the time."""
 KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
@@ -75,7 +73,7 @@ def scenario(system: int = APA_SYSTEM) -> Scenario:
     return Scenario(
         name="apa-world",
         stop_time=STOP_TIME,
-        vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
+        vehicle={"odometry.ideal": False, "driver.apa_switch_time": 0.5},
         controller={"system": system},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER_TIME)

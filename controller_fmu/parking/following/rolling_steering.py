@@ -16,9 +16,9 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.following.params import RATE_FRACTION, START_ACCELERATION, FollowingContext
+from controller_fmu.parking.geometry.outline import SAME_CURVATURE
 from controller_fmu.parking.planning.gear_segments import GearSegment, distance_before, gear_segment
 from controller_fmu.parking.planning.planner import PlannedPath
-from controller_fmu.parking.planning.problem import SAME_CURVATURE
 from modelkit.maths import sign
 
 MIN_ROLLING_SPEED = 0.12

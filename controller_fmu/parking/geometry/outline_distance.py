@@ -16,12 +16,8 @@ def edge_distance_squared(ax: float, ay: float, bx: float, by: float, car: Vehic
     """
     half_length = car.half_length
     half_width = car.half_width
-    low = ax if ax < bx else bx
-    high = bx if ax < bx else ax
-    apart_x = low - half_length if low > half_length else (-half_length - high if high < -half_length else 0.0)
-    low = ay if ay < by else by
-    high = by if ay < by else ay
-    apart_y = low - half_width if low > half_width else (-half_width - high if high < -half_width else 0.0)
+    apart_x = box_distance(ax, bx, half_length)
+    apart_y = box_distance(ay, by, half_width)
     if apart_x * apart_x + apart_y * apart_y >= best:
         return best
     dx = bx - ax
@@ -43,6 +39,14 @@ def edge_distance_squared(ax: float, ay: float, bx: float, by: float, car: Vehic
     return _point_distance(bx, by, half_length, half_width, best)
 
 
+def box_distance(a: float, b: float, half: float) -> float:
+    """Return the distance [m] from the range between ``a`` and ``b`` to the range of ``half`` [m] about zero."""
+    above = (a if a < b else b) - half
+    below = -half - (b if a < b else a)
+    apart = above if above > below else below
+    return apart if apart > 0.0 else 0.0
+
+
 def overlap_ahead(start: Point, end: Point, car: VehicleOutline) -> float:
     """Return how far [m] ahead of its centre a segment cuts a car about the origin: the middle of what is inside."""
     low = Point(-car.half_length, -car.half_width)
@@ -51,9 +55,7 @@ def overlap_ahead(start: Point, end: Point, car: VehicleOutline) -> float:
 
 
 def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:
-    dx = abs(x) - half_length
-    dy = abs(y) - half_width
-    dx = dx if dx > 0.0 else 0.0
-    dy = dy if dy > 0.0 else 0.0
+    dx = box_distance(x, x, half_length)
+    dy = box_distance(y, y, half_width)
     gap = dx * dx + dy * dy
     return gap if gap < best else best

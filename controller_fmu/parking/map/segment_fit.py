@@ -34,8 +34,6 @@ LEAST_WEIGHT = 1e-9
 """Of an unknown that no echo determines."""
 MIN_EXTENT = 0.02
 """Shortest segment [m]."""
-STATE_COUNT = 4
-"""Of a segment, in this order: shift c [m], turn q [rad], start and end [m]."""
 
 
 class EndGuess(NamedTuple):
@@ -56,10 +54,11 @@ class SegmentGuess(NamedTuple):
 
 
 class NormalEquations(NamedTuple):
-    """J'WJ by rows and J'Wr of the ``STATE_COUNT``; ``chi_square``: the weighted residuals."""
+    """J'WJ and J'Wr (``right``) of shift c [m], turn q [rad], start a and end b [m]; ``chi_square``: the residuals'."""
 
-    matrix: tuple[float, ...] = (0.0,) * (STATE_COUNT * STATE_COUNT)
-    right: tuple[float, ...] = (0.0,) * STATE_COUNT
+    matrix: tuple[float, ...] = (0.0,) * 9
+    """cc, cq, qq, ca, qa, aa, cb, qb, bb: the ends do not couple."""
+    right: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     chi_square: float = 0.0
 
 
@@ -75,10 +74,9 @@ def fit_segment(chain: EchoChain, first: int, last: int, guess: SegmentGuess, va
 
     The guesses of direction and ends weigh as measurements do.
     """
-    start = guess.start
-    end = guess.end
-    first_start = start.along + start.inset
-    segment = guess.line._replace(start=first_start, end=max(end.along - end.inset, first_start + MIN_EXTENT))
+    start = guess.start.along + guess.start.inset
+    end = max(guess.end.along - guess.end.inset, start + MIN_EXTENT)
+    segment = guess.line._replace(start=start, end=end)
     normal = NormalEquations()
     for _ in range(MAX_ITERATIONS):
         normal = _normal_equations(chain, first, last, segment, guess, variance)
@@ -90,13 +88,10 @@ def _normal_equations(
     chain: EchoChain, first: int, last: int, segment: Landmark, guess: SegmentGuess, variance: float
 ) -> NormalEquations:
     """Return the normal equations at ``segment``, with the guesses of direction and ends."""
-    start = guess.start
-    end = guess.end
-    aa = 1.0 / (start.sigma * start.sigma)
-    bb = 1.0 / (end.sigma * end.sigma)
-    matrix = tuple(aa if number == 10 else (bb if number == 15 else 0.0) for number in range(STATE_COUNT * STATE_COUNT))
-    right = (0.0, 0.0, (start.along - segment.start) * aa, (end.along - segment.end) * bb)
-    normal = NormalEquations(matrix, right)
+    aa = 1.0 / (guess.start.sigma * guess.start.sigma)
+    bb = 1.0 / (guess.end.sigma * guess.end.sigma)
+    right = (0.0, 0.0, (guess.start.along - segment.start) * aa, (guess.end.along - segment.end) * bb)
+    normal = NormalEquations((0.0,) * 5 + (aa, 0.0, 0.0, bb), right)
     cos = math.cos(segment.heading)
     sin = math.sin(segment.heading)
     for number in range(MAX_ECHOES):
@@ -110,7 +105,7 @@ def _normal_equations(
     turn = wrap_angle(guess.line.heading - segment.heading)
     m = normal.matrix
     c, q, a, b = normal.right
-    return normal._replace(matrix=(m[0] + 1.0,) + m[1:5] + (m[5] + weight,) + m[6:], right=(c, q + weight * turn, a, b))
+    return normal._replace(matrix=(m[0] + 1.0, m[1], m[2] + weight) + m[3:], right=(c, q + weight * turn, a, b))
 
 
 def _with_echo(
@@ -123,29 +118,28 @@ def _with_echo(
     weight = 1.0 / (variance + residual * residual / (ROBUST_SIGMA * ROBUST_SIGMA))
     across = -at.y / h
     along = -(at.x - t) / h
-    row = (across, across * t, along if at.x < segment.start else 0.0, along if at.x > segment.end else 0.0)
+    turning = across * t
+    of_start = along if at.x < segment.start else 0.0
+    of_end = along if at.x > segment.end else 0.0
+    row = (across, turning, turning, across, turning, of_start, across, turning, of_end)
+    other = (across, across, turning, of_start, of_start, of_start, of_end, of_end, of_end)
+    c, q, a, b = normal.right
+    pull = weight * residual
     return NormalEquations(
-        tuple(
-            normal.matrix[number] + weight * row[number // STATE_COUNT] * row[number % STATE_COUNT]
-            for number in range(STATE_COUNT * STATE_COUNT)
-        ),
-        tuple(normal.right[number] + weight * row[number] * residual for number in range(STATE_COUNT)),
-        normal.chi_square + weight * residual * residual,
+        tuple(normal.matrix[number] + weight * row[number] * other[number] for number in range(9)),
+        (c + pull * across, q + pull * turning, a + pull * of_start, b + pull * of_end),
+        normal.chi_square + pull * residual,
     )
 
 
-def solve(normal: NormalEquations, right: tuple[float, ...]) -> tuple[float, ...]:
+def solve(normal: NormalEquations, right: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
     """Return the unknowns [m, rad] for a right-hand side: the ends are eliminated (they do not couple), then 2 x 2."""
-    m = normal.matrix
-    ca = m[2]
-    cb = m[3]
-    qa = m[6]
-    qb = m[7]
-    aa = max(m[10], LEAST_WEIGHT)
-    bb = max(m[15], LEAST_WEIGHT)
-    cc = m[0] - ca * ca / aa - cb * cb / bb
-    cq = m[1] - ca * qa / aa - cb * qb / bb
-    qq = m[5] - qa * qa / aa - qb * qb / bb
+    cc, cq, qq, ca, qa, aa, cb, qb, bb = normal.matrix
+    aa = max(aa, LEAST_WEIGHT)
+    bb = max(bb, LEAST_WEIGHT)
+    cc = cc - ca * ca / aa - cb * cb / bb
+    cq = cq - ca * qa / aa - cb * qb / bb
+    qq = qq - qa * qa / aa - qb * qb / bb
     c = right[0] - ca * right[2] / aa - cb * right[3] / bb
     q = right[1] - qa * right[2] / aa - qb * right[3] / bb
     determinant = max(cc * qq - cq * cq, LEAST_WEIGHT)
@@ -154,7 +148,7 @@ def solve(normal: NormalEquations, right: tuple[float, ...]) -> tuple[float, ...
     return (shift, turn, (right[2] - ca * shift - qa * turn) / aa, (right[3] - cb * shift - qb * turn) / bb)
 
 
-def _apply_step(segment: Landmark, step: tuple[float, ...]) -> Landmark:
+def _apply_step(segment: Landmark, step: tuple[float, float, float, float]) -> Landmark:
     """Return the segment changed by a step of bounded size."""
     shift = min(max(step[0], -MAX_SHIFT), MAX_SHIFT)
     turn = min(max(step[1], -MAX_TURN), MAX_TURN)

@@ -10,9 +10,9 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.outline import (
     OutlineFrame,
     VehicleOutline,
+    frame_along_arc,
     max_point_speed_ratio,
     outline_frame,
-    pose_along_arc,
 )
 from controller_fmu.parking.geometry.outline_distance import edge_distance_squared, overlap_ahead
 from controller_fmu.parking.map.landmark import Landmark, end_point, start_point
@@ -112,14 +112,13 @@ def monitor_collision(
     free = NO_LIMIT
     by_map = NO_LIMIT
     if horizon > 0.0:
+        here = outline_frame(motion.pose)
+        part = motion.direction * horizon / MAX_POSES
         poses = tuple(
-            outline_frame(
-                pose_along_arc(motion.pose, motion.direction * (horizon * (step + 1) / MAX_POSES), motion.curvature)
-            )
-            for step in range(MAX_POSES)
+            frame_along_arc(here, motion.pose.heading, part * (step + 1), motion.curvature) for step in range(MAX_POSES)
         )
         reach = horizon * max_point_speed_ratio(outline, motion.curvature)
-        sweep = OutlineSweep(horizon, poses, outline, outline_frame(motion.pose), outline_frame(motion.stand), reach)
+        sweep = OutlineSweep(horizon, poses, outline, here, outline_frame(motion.stand), reach)
         for landmark in landmarks:
             if is_confirmed(landmark, mapping):
                 a = start_point(landmark)

@@ -1,6 +1,6 @@
 """Analytic expansion: the cheapest Reeds-Shepp word from a node to the target that is free of collision."""
 
-from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.geometry.outline import outline_frame, pose_along_arc
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.reeds_shepp import turn_of, word_curvature
@@ -68,7 +68,7 @@ def _ends_free(work: PlanningWork, word: int) -> bool:
 
 def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:
     """Return whether the car can drive a word from ``pose``."""
-    gap = clearance(work, pose, problem) - problem.margin
+    gap = clearance(work, outline_frame(pose), problem) - problem.margin
     for segment in range(WORD_SEGMENTS):
         distance = word_length(work, word, segment)
         k = word_curvature(work, word, segment, problem)

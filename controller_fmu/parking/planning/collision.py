@@ -9,8 +9,8 @@ keeps half of it, as no step is longer than the margin over ``max_point_speed_ra
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.outline import max_point_speed_ratio, pose_along_arc
-from controller_fmu.parking.geometry.outline_distance import edge_distance_squared
+from controller_fmu.parking.geometry.outline import OutlineFrame, frame_along_arc, max_point_speed_ratio, outline_frame
+from controller_fmu.parking.geometry.outline_distance import box_distance, edge_distance_squared
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.maths import sign
@@ -22,14 +22,16 @@ MIN_STEP = 0.01
 """Steps [m] of a sweep that runs alongside an edge at the margin; shorter where the margin is small."""
 
 
-def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
+def clearance(work: PlanningWork, frame: OutlineFrame, problem: SearchProblem) -> float:
     """Return the distance [m] of the outline to the nearest edge, at most ``MAX_CLEARANCE``; 0: contact or outside."""
     car = problem.car
     region = problem.region
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    x = pose.x + car.centre_ahead * cos
-    y = pose.y + car.centre_ahead * sin
+    cos = frame.cos
+    sin = frame.sin
+    x = frame.x + car.centre_ahead * cos
+    y = frame.y + car.centre_ahead * sin
+    along = car.half_length * abs(cos) + car.half_width * abs(sin)
+    across = car.half_length * abs(sin) + car.half_width * abs(cos)
     grid = region.edge_grid
     column = math.floor((x - region.x0) / grid.cell)
     row = math.floor((y - region.y0) / grid.cell)
@@ -43,9 +45,12 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
         ay = work.edge_y1[edge] - y
         bx = work.edge_x2[edge] - x
         by = work.edge_y2[edge] - y
-        best = edge_distance_squared(
-            ax * cos + ay * sin, ay * cos - ax * sin, bx * cos + by * sin, by * cos - bx * sin, car, best
-        )
+        apart_x = box_distance(ax, bx, along)
+        apart_y = box_distance(ay, by, across)
+        if apart_x * apart_x + apart_y * apart_y < best:
+            best = edge_distance_squared(
+                ax * cos + ay * sin, ay * cos - ax * sin, bx * cos + by * sin, by * cos - bx * sin, car, best
+            )
     return math.sqrt(best)
 
 
@@ -67,10 +72,12 @@ def sweep_arc(
     rate = max_point_speed_ratio(problem.car, curvature)
     least = min(MIN_STEP, problem.margin / rate)
     driven = 0.0
+    start = outline_frame(pose)
     while driven < longest:
         sure = max(gap, 0.0) / rate
         after = min(driven + max(sure, least), longest)
-        gap_after = clearance(work, pose_along_arc(pose, direction * after, curvature), problem) - problem.margin
+        frame = frame_along_arc(start, pose.heading, direction * after, curvature)
+        gap_after = clearance(work, frame, problem) - problem.margin
         if gap_after < 0.0:
             return ArcSweep(min(driven + sure, longest), gap_after)
         driven = after

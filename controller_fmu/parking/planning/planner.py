@@ -7,7 +7,7 @@ another request or of later steps, all is done anew from the first step.
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.geometry.outline import outline_frame, pose_along_arc
 from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.planning.collision import MAX_CLEARANCE, clearance, sweep_arc
 from controller_fmu.parking.planning.grids import (
@@ -186,7 +186,7 @@ def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
             distance = work.best_length[number]
             overrun = 0.0
             if before.distance * distance < 0.0:
-                gap = clearance(work, pose, problem) - margin
+                gap = clearance(work, outline_frame(pose), problem) - margin
                 longest = sign(before.distance) * MAX_CLEARANCE
                 overrun = sweep_arc(work, pose, gap, longest, before.curvature, problem).distance
             before = PathSegment(distance, work.best_curvature[number], overrun)
@@ -223,8 +223,8 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     problem = search_problem(work, request)
     start = problem.target if problem.from_goal else problem.root
     goal = problem.root if problem.from_goal else problem.target
-    at_start = 0.0 if is_inside(work, request.start) else clearance(work, start, problem)
-    at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, goal, problem)
+    at_start = 0.0 if is_inside(work, request.start) else clearance(work, outline_frame(start), problem)
+    at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, outline_frame(goal), problem)
     work.values[PlanValue.MIN_END_CLEARANCE] = min(at_start, at_goal)
     work.counts[PlanCount.GOAL_TIGHTER] = 0 if at_start < at_goal else 1
     if at_start <= 0.0:

@@ -9,8 +9,6 @@ CUSP_COST = 2.0
 """Cost [m] of a change of direction."""
 STEERING_COST = 0.5
 """Cost [m] of turning the wheel from straight to full lock."""
-SAME_CURVATURE = 1e-6
-"""Curvatures nearer than this [1/m] are one."""
 
 
 class PlanningRequest(NamedTuple):

@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.geometry.outline import outline_frame, pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, try_analytic_expansion
 from controller_fmu.parking.planning.collision import clearance, sweep_arc
 from controller_fmu.parking.planning.grids import UNREACHABLE_COST, holonomic_cost_to_go
@@ -56,7 +56,7 @@ CROWDING_CELL = 1.5
 def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
     """Insert the root into an empty tree, and measure how far the car can drive from the target."""
     clear_tree(work)
-    gap = clearance(work, problem.target, problem) - problem.margin
+    gap = clearance(work, outline_frame(problem.target), problem) - problem.margin
     for gear in range(2):
         for turn in range(3):
             k = (turn - 1) * problem.car.max_curvature
@@ -192,7 +192,7 @@ def region_of(pose: Pose, problem: SearchProblem) -> int:
 
 def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProblem) -> None:
     """Measure how far the car can drive from a node, in both gears at five curvatures."""
-    gap = clearance(work, pose, problem) - problem.margin
+    gap = clearance(work, outline_frame(pose), problem) - problem.margin
     for gear in range(2):
         for turn in range(5):
             k = 0.5 * (turn - 2) * problem.car.max_curvature

@@ -1,6 +1,6 @@
 """Shortcut smoothing: spans of the path found are replaced by cheaper words that are free of collision."""
 
-from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.geometry.outline import SAME_CURVATURE, pose_along_arc
 from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free
 from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
 from controller_fmu.parking.planning.reeds_shepp import WordRequest, list_words, turn_of, word_curvature
@@ -25,7 +25,6 @@ MAX_PASSES = 4
 MAX_TRIES = 4
 MIN_GAIN = 0.01
 """A word has to be cheaper by so much [m]."""
-SAME_CURVATURE = 1e-9
 
 
 def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:

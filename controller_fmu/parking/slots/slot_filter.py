@@ -256,17 +256,13 @@ def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filt
     if new.origin == EchoOrigin.OUT_OF_VIEW or new.distance >= before.predicted.distance:
         return before
     u = direction_of(new, sensor)
-    is_end = at == END_INDEX
-    is_known = new.origin == EchoOrigin.INTERIOR or (new.origin == EchoOrigin.START and not is_end)
-    turn = u.y * (new.x - slot_filter.state[at]) - u.x * (new.y - slot_filter.state[at + 1]) if not is_end else 0.0
-    first = u.x * slot_filter.into_x + u.y * slot_filter.into_y if is_end else u.x
-    gradient = tuple(_derivative(number - at, first, u.y, turn) for number in range(STATE_COUNT))
-    return SlotEcho(new, gradient, is_known)
-
-
-def _derivative(state: int, x: float, y: float, turn: float) -> float:
-    """Return the derivative of a range by a neighbour's x (0, or by the end), y (1) and heading (2)."""
-    return x if state == 0 else (y if state == 1 else (turn if state == 2 else 0.0))
+    if at == END_INDEX:
+        into = u.x * slot_filter.into_x + u.y * slot_filter.into_y
+        return SlotEcho(new, (0.0,) * END_INDEX + (into,), new.origin == EchoOrigin.INTERIOR)
+    turn = u.y * (new.x - slot_filter.state[at]) - u.x * (new.y - slot_filter.state[at + 1])
+    own = (u.x, u.y, turn)
+    gradient = own + (0.0, 0.0, 0.0, 0.0) if at == 0 else (0.0, 0.0, 0.0) + own + (0.0,)
+    return SlotEcho(new, gradient, new.origin in (EchoOrigin.INTERIOR, EchoOrigin.START))
 
 
 def is_slot_corner(slot_filter: SlotFilter, point: Point) -> bool:

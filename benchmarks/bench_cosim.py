@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.results import record, size
-from benchmarks.rounds import in_turn
+from benchmarks.rounds import in_turn, new_log
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
@@ -22,13 +22,12 @@ def main() -> None:
     scenario = load_scenario("guo2015-case4")
     python, native = (fmu_files(kind, lambda text: None) for kind in ("python", "native"))
     folder = Path(tempfile.mkdtemp())
-    logs = {kind: folder / f"{kind}.mcap" for kind in ("python", "native")}
     runs: dict[str, Callable[[], float]] = {
         "models in process": lambda: run_scenario(scenario).wall_time,
         "PythonFMUs": lambda: run_scenario(scenario, python, kind="python").wall_time,
-        "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=logs["python"]).wall_time,
+        "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=new_log(folder)).wall_time,
         "native FMUs": lambda: run_scenario(scenario, native, kind="native").wall_time,
-        "native FMUs, log": lambda: run_scenario(scenario, native, kind="native", log=logs["native"]).wall_time,
+        "native FMUs, log": lambda: run_scenario(scenario, native, kind="native", log=new_log(folder)).wall_time,
     }
     ran = run_scenario(scenario, native, kind="native")
     steps = len(ran.recording.t) - 1

@@ -16,7 +16,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 
 from benchmarks.results import record, size
-from benchmarks.rounds import in_turn
+from benchmarks.rounds import in_turn, new_log
 from fmus.compiled_batch import compile_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
@@ -136,8 +136,9 @@ def whole_runs(scenario: Scenario, python: Files, native: Files, folder: Path) -
     kinds = {"python": python, "native": native}
 
     def run(kind: str, is_logged: bool) -> Loop:
-        path = folder / f"{kind}.mcap" if is_logged else None
-        return lambda: run_scenario(scenario, kinds[kind], kind=kind, log=path).wall_time
+        return lambda: (
+            run_scenario(scenario, kinds[kind], kind=kind, log=new_log(folder) if is_logged else None).wall_time
+        )
 
     asked = {"without log": False, "with the log": True}
     walls = in_turn({f"{kind} {what}": run(kind, log) for what, log in asked.items() for kind in kinds}, MOST_ROUNDS)

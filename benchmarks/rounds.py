@@ -2,8 +2,10 @@
 
 import math
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -57,3 +59,8 @@ def timed(work: Callable[[], object], clock: Callable[[], float] = time.perf_cou
         return clock() - begun
 
     return once
+
+
+def new_log(folder: Path) -> Path:
+    """Return a path in ``folder`` at which there is no log: one that replaces a file waits for the disk."""
+    return Path(tempfile.mkdtemp(dir=folder)) / "log.mcap"

@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 
 from orchestrator.evaluation.verdict.geometry import CarOutline
 from orchestrator.inputs.scenario.load_scenario import load_scenario
-from orchestrator.presentation.drawing.scene import Frames, planar_pose, trail, trail_pose
+from orchestrator.presentation.drawing.scene import Frames, planar_pose, trail, trail_poses
 from orchestrator.session.session import Messages, make_instances, run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.fmu_instance import all_values
@@ -85,6 +85,6 @@ def test_frames_have_the_numbers_they_are_given() -> None:
 
 def test_a_trail_has_the_poses_it_is_given() -> None:
     poses = [(0.0, 0.0, 0.0), (1.5, -2.5, 0.3), (-0.0, 1e9, -3.0)]
-    message = PosesInFrame.FromString(trail(1_500_000_000, [trail_pose(pose) for pose in poses]))
+    message = PosesInFrame.FromString(trail(1_500_000_000, trail_poses(np.array(poses))))
     assert message.timestamp.ToNanoseconds() == 1_500_000_000
     assert list(message.poses) == [planar_pose(*pose) for pose in poses]

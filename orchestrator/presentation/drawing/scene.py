@@ -213,26 +213,27 @@ def path_update(t_ns: int, points: Array) -> SceneUpdate:
 
 
 def trail(t_ns: int, poses: list[bytes]) -> bytes:
-    """Return the message that tells where the car has been; each pose as :func:`trail_pose` made it."""
+    """Return the message that tells where the car has been; each pose as :func:`trail_poses` made it."""
     head = PosesInFrame(timestamp=stamp(t_ns), frame_id=WORLD)
     return head.SerializeToString(deterministic=True) + b"".join(poses)
 
 
-def trail_pose(pose: tuple[float, float, float]) -> bytes:
-    """Return a pose as a part of a trail: fields of a protobuf message may be written one after the other."""
-    x, y, heading = pose
-    part = bytearray(TRAIL_TEMPLATE)
-    for place, value in zip(TRAIL_PLACES, (x, y, math.sin(0.5 * heading), math.cos(0.5 * heading)), strict=True):
-        DOUBLE.pack_into(part, place, value)
-    return bytes(part)
+def trail_poses(poses: Array) -> list[bytes]:
+    """Return poses (n, 3) as parts of a trail: fields of a protobuf message may be written one after the other."""
+    rows = np.repeat(TRAIL_TEMPLATE, len(poses), axis=0)
+    x, y, heading = poses.T
+    for place, values in zip(TRAIL_PLACES, (x, y, np.sin(0.5 * heading), np.cos(0.5 * heading)), strict=True):
+        np.ndarray(len(rows), np.float64, rows.data, place, rows.shape[1:])[:] = values
+    return [row.tobytes() for row in rows]
 
 
-def _trail_template(values: tuple[float, ...]) -> tuple[bytes, tuple[int, ...]]:
-    """Return a part of a trail that holds ``values``: x, y, and z and w of the rotation; and where they are."""
+def _trail_template(values: tuple[float, ...]) -> tuple[NDArray[np.uint8], tuple[int, ...]]:
+    """Return a part of a trail as bytes (1, n), and where ``values`` are: x, y, and z and w of the rotation."""
     x, y, z, w = values
     pose = Pose(position=Vector3(x=x, y=y), orientation=Quaternion(z=z, w=w))
     template = PosesInFrame(poses=[pose]).SerializeToString(deterministic=True)
-    return template, tuple(template.index(DOUBLE.pack(value)) for value in values)
+    places = tuple(template.index(DOUBLE.pack(value)) for value in values)
+    return np.frombuffer(template, dtype=np.uint8)[None, :], places
 
 
 TRAIL_TEMPLATE, TRAIL_PLACES = _trail_template((1.25, 2.25, 3.25, 4.25))

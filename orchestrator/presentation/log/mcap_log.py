@@ -189,8 +189,8 @@ class _Pictures:
         while self._changes and times[-1] >= self._changes[0]:
             self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
         in_trail = np.flatnonzero(times % TRAIL_STEP_NS < SCENE_PERIOD_NS)
-        for time, (x, y, heading) in zip(times[in_trail].tolist(), drawn[in_trail, :3].tolist(), strict=True):
-            self._add_to_trail(scene.trail_pose((x, y, heading)))
+        for time, pose in zip(times[in_trail].tolist(), scene.trail_poses(drawn[in_trail, :3]), strict=True):
+            self._add_to_trail(pose)
             if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
                 self._draw_trail(time)
         shown = due[times % PATH_PERIOD_NS < SCENE_PERIOD_NS]

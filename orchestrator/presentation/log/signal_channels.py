@@ -18,7 +18,7 @@ from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, place
 from orchestrator.simulation.cosim.recording import to_json
 from orchestrator.simulation.cosim.signal_blocks import Times
 
-ROWS_SIZE, MAX_ROWS_SIZE = CHUNK_SIZE // 4, 4 * CHUNK_SIZE
+ROWS_SIZE, MAX_ROWS_SIZE = CHUNK_SIZE // 2, 4 * CHUNK_SIZE
 """Bytes of the signals in one chunk: expected, and if all of them change at each exchange."""
 
 

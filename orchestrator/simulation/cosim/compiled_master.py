@@ -11,6 +11,7 @@ process of its own, and one on a machine where the compiled loop cannot be built
 """
 
 import ctypes
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -31,9 +32,11 @@ from orchestrator.simulation.cosim.fmu_instance import Array, Indices, all_value
 from orchestrator.simulation.cosim.local_instance import LocalInstance, Transfer
 from orchestrator.simulation.cosim.signal_blocks import Times
 
-EXCHANGES_PER_CALL = 250
+EXCHANGES_PER_CALL = 500
 """Exchanges per compiled call."""
 FETCH, SEND, STEP = 1, 2, 3
+ObserverOfBlock = Callable[[Times, Array], None]
+EndingOfBlock = Callable[[Times, Array], tuple[int, str] | None]
 
 TransferC = structure(
     "TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long, changed=Long
@@ -100,53 +103,56 @@ class CompiledMaster(CoSimulation):
 
     def _run_blocks(self, plan: "_Plan") -> Termination:
         first = 0
+        endings = [self._ending_of_block(ending) for ending in self.endings]
+        observers = [self._observer_of_block(observer) for observer in self.observers]
         while True:
             count = plan.advance(first)
-            unseen = 0 if self.observers or self.endings else max(count - 1, 0)
+            unseen = 0 if observers or endings else max(count - 1, 0)
             rows = plan.rows_of_ports(unseen, count)
             times = np.minimum(np.arange(first + unseen, first + count, dtype=np.int64) * self.step_ns, self.stop_ns)
             if len(times):
-                seen, reason = self._end_in_block(times, rows, first + count - 1 == plan.last)
-                for observer in self.observers:
-                    self._show(observer, times[:seen], rows[:seen])
+                seen, reason = self._end_in_block(endings, times, rows, first + count - 1 == plan.last)
+                for observe_rows in observers:
+                    observe_rows(times[:seen], rows[:seen])
                 self.values[:] = rows[seen - 1]
                 if reason:
                     return Termination(reason, int(times[seen - 1]))
             first += count
             plan.check(first)
 
-    def _end_in_block(self, times: Times, rows: Array, has_last: bool) -> tuple[int, str]:
+    def _end_in_block(self, endings: list[EndingOfBlock], times: Times, rows: Array, has_last: bool) -> tuple[int, str]:
         """Return how many exchanges of a block take place, and why the run is over after them; empty if it goes on."""
         if self.interrupt.requested:
             return 1, "interrupted"
         found = len(times), "stop_time" if has_last else ""
-        for ending in self.endings:
-            reached = (
-                ending.first_reached(times, rows)
-                if isinstance(ending, BlockStopCondition)
-                else self._first_reached(ending, times, rows)
-            )
+        for first_reached in endings:
+            reached = first_reached(times, rows)
             if reached is not None and (reached[0] + 1 < found[0] or found[1] in ("", "stop_time")):
                 found = reached[0] + 1, reached[1]
         return found
 
-    def _first_reached(self, ending: StopCondition, times: Times, rows: Array) -> tuple[int, str] | None:
-        """Return where an ending ends a block that looks at single exchanges, and the reason."""
-        for row, t_ns in enumerate(times.tolist()):
-            self.values[:] = rows[row]
-            reason = ending.stop_reason(t_ns)
-            if reason:
-                return row, reason
-        return None
+    def _ending_of_block(self, ending: StopCondition) -> EndingOfBlock:
+        """Return where an ending ends a block and the reason, of one that looks at single exchanges too."""
 
-    def _show(self, observer: Observer, times: Times, rows: Array) -> None:
-        """Show an observer a block, exchange by exchange if it cannot look at all at once."""
-        if isinstance(observer, BlockObserver):
-            observer.observe_rows(times, rows)
-            return
-        for row, t_ns in enumerate(times.tolist()):
-            self.values[:] = rows[row]
-            observer.on_communication_point(t_ns)
+        def first_reached(times: Times, rows: Array) -> tuple[int, str] | None:
+            for row, t_ns in enumerate(times.tolist()):
+                self.values[:] = rows[row]
+                reason = ending.stop_reason(t_ns)
+                if reason:
+                    return row, reason
+            return None
+
+        return ending.first_reached if isinstance(ending, BlockStopCondition) else first_reached
+
+    def _observer_of_block(self, observer: Observer) -> ObserverOfBlock:
+        """Return how an observer is shown a block: exchange by exchange if it cannot look at all at once."""
+
+        def observe_rows(times: Times, rows: Array) -> None:
+            for row, t_ns in enumerate(times.tolist()):
+                self.values[:] = rows[row]
+                observer.on_communication_point(t_ns)
+
+        return observer.observe_rows if isinstance(observer, BlockObserver) else observe_rows
 
 
 class _Plan:

@@ -43,6 +43,7 @@ from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target  # noqa
 from orchestrator.inputs.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout  # noqa: E402
 from orchestrator.inputs.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.presentation.drawing.chart_svg import chart_svg  # noqa: E402
+from orchestrator.studies.live.map_code import map_code  # noqa: E402
 from orchestrator.studies.live.page import NAME as LIVE  # noqa: E402
 from orchestrator.studies.live.page import write_live  # noqa: E402
 from orchestrator.studies.live.situation import page_scenarios  # noqa: E402
@@ -67,7 +68,7 @@ def main() -> None:
             page = folder / (f"live-{system}.html" if system else LIVE)
             scenarios = page_scenarios(system)
             if scenarios:
-                write_live(page, scenarios)
+                write_live(page, scenarios, map_code(scenarios))
                 print(page.relative_to(ROOT))
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fmus.native.library_cache import batch_library
 from fmus.native.structures import Long, Pointer, structure
 from fmus.study_slices import StudyCode
-from modelkit.connections import Wire, connections, part_of
+from modelkit.connections import connections, live_connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
 
@@ -177,8 +177,7 @@ class BatchTables:
             for is_input, cls in ((1, model.inputs), (0, model.outputs)):
                 for place, variable in enumerate(variables(cls)):
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
-        links = [link for link in connections([part_of(name, model) for name, model in models.items()])
-                 if code is None or _is_made(link, models, code)]  # fmt: skip
+        links = live_connections(models, None if code is None else code.slices)
         notes = [self._note(item) for item in kept]
         libraries = [_load_library(name, model, code) for name, model in models.items()]
         end = ending or StopCondition("", (), "", 0.0, 0)
@@ -230,12 +229,6 @@ class BatchTables:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
-
-
-def _is_made(link: Wire, models: Mapping[str, Model], code: StudyCode) -> bool:
-    """Return whether the output that a link leads from is one that a study's code works out."""
-    name = list(models)[link.source]
-    return variables(models[name].outputs)[link.output].name in code.slices[name].outputs
 
 
 def _load_library(name: str, model: Model, code: StudyCode | None) -> Any:

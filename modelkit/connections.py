@@ -3,8 +3,8 @@
 Local variables are not connected: other tools could not.
 """
 
-from collections.abc import Collection, Sequence
-from typing import NamedTuple
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple, Protocol
 
 from modelkit.model import Model
 from modelkit.signal import Role
@@ -28,6 +28,14 @@ class Wire(NamedTuple):
     output: int
     target: int
     input: int
+
+
+class HasOutputs(Protocol):
+    """A slice of a model."""
+
+    @property
+    def outputs(self) -> frozenset[str]:
+        """Return the names of the outputs that it computes."""
 
 
 class CannotConnectError(TypeError):
@@ -70,6 +78,17 @@ def connections(parts: Sequence[Part], fed: Collection[tuple[int, int]] = ()) ->
                 _check(parts[source], parts[source].outputs[output], receiver, wanted)
                 wires.append(Wire(source, output, target, place))
     return wires
+
+
+def live_connections(models: Mapping[str, Model], slices: Mapping[str, HasOutputs] | None = None) -> list[Wire]:
+    """Return what is connected of models; of ``slices``, by their names, what leads from an output that these have."""
+    names = list(models)
+    return [
+        wire
+        for wire in connections([part_of(name, model) for name, model in models.items()])
+        if slices is None
+        or variables(models[names[wire.source]].outputs)[wire.output].name in slices[names[wire.source]].outputs
+    ]
 
 
 def _check(sender: Part, given: Variable, receiver: Part, taken: Variable) -> None:

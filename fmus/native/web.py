@@ -4,10 +4,11 @@ The C is that of the native FMUs and the batch; the C library, its mathematics i
 offers is in ``c/live.c``.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from fmus.cache_paths import CACHE_FOLDER, LIBRARY_FOLDER
 from fmus.locks import cache_file
@@ -16,8 +17,11 @@ from fmus.native.coverage_probes import DECLARED, instrument
 from fmus.native.library_cache import C_FILES, fingerprints, key_of, own_files
 from fmus.native.platforms import WEB, CompileTarget
 from fmus.native.source_fingerprint import ROOT, hash_of, words_of
-from modelkit.connections import connections, part_of
+from modelkit.connections import live_connections
 from modelkit.model import Chart, Model
+
+if TYPE_CHECKING:  # the translator takes a tenth of a second to import
+    from fmus.compiler.slicing import Slice
 
 CACHED_MODULES = 4
 """Names of modules of older sources that stay in the cache."""
@@ -48,21 +52,37 @@ def can_build() -> bool:
     return find_spec("ziglang") is not None
 
 
-def web_module(models: Mapping[str, Model]) -> Path:
-    """Return the path of the module ``.wasm`` of connected models. Raises ``RuntimeError`` without ziglang."""
-    return live_library(models, WEB, ".wasm")
+class LazySlices(NamedTuple):
+    """Slices of models, found when they are compiled."""
+
+    words: tuple[str, ...]
+    """All that they depend on besides the models."""
+    solve: "Callable[[], Mapping[str, Slice]]"
+    """Returns them by the names of the models."""
+
+
+def web_module(models: Mapping[str, Model], slices: LazySlices | None = None) -> Path:
+    """Return the path of the module ``.wasm`` of connected models, or of ``slices`` of them.
+
+    Raises ``RuntimeError`` without ziglang.
+    """
+    return live_library(models, WEB, ".wasm", slices=slices)
 
 
 def live_library(
-    models: Mapping[str, Model], target: CompileTarget, suffix: str, more: Mapping[str, str] | None = None
+    models: Mapping[str, Model],
+    target: CompileTarget,
+    suffix: str,
+    more: Mapping[str, str] | None = None,
+    slices: LazySlices | None = None,
 ) -> Path:
     """Return the path of what ``live.c`` becomes for ``target``, with the further C files ``more``."""
-    compiler, name = find_compiler("zig"), f"live{suffix}"
+    compiler, name = find_compiler("zig"), f"live{suffix}" if slices is None else f"live_slice{suffix}"
     further = more or {}
 
     @cache
     def files() -> dict[str, str]:
-        return {**live_files(models), **further}
+        return {**live_files(models, None if slices is None else slices.solve()), **further}
 
     def make() -> bytes:
         units = sorted(file for file in files() if file.endswith("_unit.c"))
@@ -73,6 +93,7 @@ def live_library(
         compiler.recipe(target),
         *fingerprints(further),
         *(word for model in models.values() for word in words_of(model)),
+        *(() if slices is None else slices.words),
     ]
     sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
     of_c = cache_file(
@@ -81,24 +102,24 @@ def live_library(
     return cache_file(LIBRARY_FOLDER, "live", of_c.read_text(encoding="ascii"), suffix, make)
 
 
-def live_files(models: Mapping[str, Model]) -> dict[str, str]:
-    """Return the C files; those called ``..._unit.c`` are compiled."""
+def live_files(models: Mapping[str, Model], slices: "Mapping[str, Slice] | None" = None) -> dict[str, str]:
+    """Return the C files; those called ``..._unit.c`` are compiled. Charts of slices do not tell what they decide."""
     from fmus.native.libraries import model_files, model_unit
 
     files = own_files("live.c", "batch.c", "batch.h", "faults.h", "library.h")
     charts = 0
-    for model in models.values():
-        files |= model_files(model)
-        files[f"{model.name}.c"] = instrument(files[f"{model.name}.c"], model.all_charts(), charts)
+    for owner, model in models.items():
+        files |= model_files(model, None if slices is None else slices[owner])
+        if slices is None:
+            files[f"{model.name}.c"] = instrument(files[f"{model.name}.c"], model.all_charts(), charts)
         files[f"{model.name}_unit.c"] = MODEL_UNIT.format(declared=DECLARED, name=model.name, unit=model_unit(model))
         charts += len(model.all_charts())
     names = [f"{model.name}_library" for model in models.values()]
-    wires = connections([part_of(name, model) for name, model in models.items()])
     files["live_unit.c"] = LIVE_UNIT.format(
         declared="\n".join(f"const Library *{name}(void);" for name in names),
         count=len(names),
         tables=", ".join(f"{name}()" for name in names),
-        links=", ".join(f"{{{', '.join(map(str, wire))}}}" for wire in wires),
+        links=", ".join(f"{{{', '.join(map(str, wire))}}}" for wire in live_connections(models, slices)),
         charts=charts,
     )
     return files

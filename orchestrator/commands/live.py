@@ -7,6 +7,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BAD_INPUT, PARKED, BadInput
+from orchestrator.studies.live.map_code import map_code
 from orchestrator.studies.live.page import NAME, write_live
 from orchestrator.studies.live.situation import page_scenarios, why_not
 from orchestrator.testing.suite.suite import select_scenarios
@@ -39,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not scenarios:
         raise BadInput("nothing of this can be driven on a page", key=" ".join(arguments.scenario))
     try:
-        write_live(arguments.out, scenarios)
+        write_live(arguments.out, scenarios, map_code(scenarios))
     except RuntimeError as error:
         say(f"apa: {error}")
         return BAD_INPUT

@@ -15,6 +15,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
+from orchestrator.studies.live.map_code import map_code
 from orchestrator.studies.live.page import live_page
 from orchestrator.studies.live.situation import page_scenarios
 from tests.live.person import drive, hurries_once, never_obeys, standing_clock
@@ -35,6 +36,17 @@ WHOLE = """(names) => names.map((name) => {
   const pose = AXES.map((axis) => n[`final.${axis}`]), manoeuvres = n.manoeuvres || 0;
   return { outcome, reason, duration: n.duration, manoeuvres, pose, events, margins };
 })"""
+MAPPED = """async (names) => {
+  const lab = await startMapLab(window.live.map.parts);
+  return names.map((name) => {
+    lab.load(name);
+    const params = lab.situation.params(), { times } = lab.situation.data, course = lab.openForMap();
+    const [row, whole] = [course, lab.whole].map((runs) => runs.run(params, times, 1 << 30).row);
+    course.close();
+    return [course.engine !== lab.engine, row.every((value, place) => Object.is(value, whole[place]))];
+  });
+}"""
+"""Whether the map has code of its own for a scenario, and whether that has all bits of the complete code."""
 RECORD = Path(__file__).parents[1] / "golden" / "scenarios.yaml"
 """What the native FMUs do, to six digits."""
 REPLANS = "valet-search-60"
@@ -58,7 +70,7 @@ def apa_file(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 def written(folder: Any, scenarios: Any) -> Any:
     path = folder / "live.html"
-    path.write_text(live_page(scenarios), encoding="utf-8")
+    path.write_text(live_page(scenarios, map_code(scenarios)), encoding="utf-8")
     assert path.stat().st_size < LARGEST_PAGE
     return path
 
@@ -89,6 +101,19 @@ def watched(show: Any, file: Any, scenario: Any, is_own: bool = False) -> Iterat
 
 def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
     as_on_record(page, scenarios_of())
+
+
+def test_the_code_of_the_map_has_the_bits_of_the_complete_code(page: Any) -> None:
+    names = [scenario.name for scenario in scenarios_of()]
+    found = dict(zip(names, page.evaluate(MAPPED, names), strict=True))
+    first = scenarios_of()[0].controller["system"]
+    own = {scenario.name for scenario in scenarios_of() if scenario.controller["system"] == first}
+    assert {name for name, (is_own, _) in found.items() if is_own} == own
+    assert all(is_equal for _, is_equal in found.values())
+
+
+def test_a_controller_of_one_system_has_no_code_for_a_map(apa_page: Any) -> None:
+    assert apa_page.evaluate(MAPPED, ["apa-parallel"]) == [[False, True]]
 
 
 @pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute

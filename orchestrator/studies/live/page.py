@@ -4,10 +4,10 @@ import base64
 import html
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -23,6 +23,9 @@ from orchestrator.presentation.report.payload import Arrays
 from orchestrator.studies.live.model_description import models_data
 from orchestrator.studies.live.situation import numbers_data, situation
 
+if TYPE_CHECKING:
+    from orchestrator.studies.live.map_code import MapCode
+
 ROOM = Path(__file__).parent
 FROM_REPORT = report.ROOM / "template"
 CORE = ("shapes.js", "data.js", "engine.js", "situation.js", "verdict.js", "history.js", "lab.js")
@@ -35,13 +38,16 @@ RUNS_MODULES = " 'wasm-unsafe-eval'; worker-src blob:"
 NAME = "live.html"
 
 
-def write_live(path: Path, scenarios: Sequence[Scenario]) -> None:
+def write_live(path: Path, scenarios: Sequence[Scenario], own_map: "MapCode | None" = None) -> None:
     """Write the page of ``scenarios``, the first one in hand. Raises ``RuntimeError`` where nothing can be compiled."""
-    write_whole(path, live_page(scenarios))
+    write_whole(path, live_page(scenarios, own_map))
 
 
-def live_page(scenarios: Sequence[Scenario]) -> str:
-    """Return the page. Raises ``BadInput`` for a limit of a signal that no model has, or controllers of two models."""
+def live_page(scenarios: Sequence[Scenario], own_map: "MapCode | None" = None) -> str:
+    """Return the page. Raises ``BadInput`` for a limit of a signal that no model has, or controllers of two models.
+
+    ``own_map``: code for its maps (see ``map_code``), which takes seconds to make; None: that of the complete models.
+    """
     models = scenarios[0].models
     for scenario in scenarios:
         if scenario.models != models:
@@ -54,9 +60,15 @@ def live_page(scenarios: Sequence[Scenario]) -> str:
         "POLICY": report.policy([core, script], RUNS_MODULES),
         "STYLE": report.style(_read("style.css")),
         "DATA": Arrays().pack(
-            {**_models(tuple(models.items())), "scenarios": [situation(item) for item in scenarios], "runs": []}
+            {
+                **_models(tuple(models.items())),
+                "scenarios": [situation(item) for item in scenarios],
+                "mapped": own_map and own_map.data(),
+                "runs": [],
+            }
         ),
-        "MODULE": _module(models),
+        "MODULE": _compress(web_module(models).read_bytes()),
+        "MAPPED": _compress(b"" if own_map is None else own_map.module.read_bytes()),
         "CORE": core,
         "SCRIPT": script,
     }
@@ -72,8 +84,8 @@ def _models(models: tuple[tuple[str, Model], ...]) -> dict[str, Any]:
     return {"models": models_data(dict(models)), "numbers": numbers_data(), "charts": charts, "pins": pins}
 
 
-def _module(models: Mapping[str, Model]) -> str:
-    return base64.b64encode(zlib.compress(web_module(models).read_bytes())).decode()
+def _compress(module: bytes) -> str:
+    return base64.b64encode(zlib.compress(module)).decode()
 
 
 def scripts() -> tuple[str, str]:

@@ -6,8 +6,10 @@ class Lab {
   /** @type {any} the scenario in hand; there is none before the first `load` */
   situation = null;
 
-  constructor(engine, data) {
+  // `mapped`: code for the runs of a map, whose `engine` works out no more than how they come out; of one system.
+  constructor(engine, data, mapped = null) {
     this.engine = engine;
+    this.mapped = mapped;
     this.table = data.numbers;
     this.scenarios = new Map(data.scenarios.map((item) => [item.name, item]));
     this.pins = data.pins;
@@ -41,6 +43,14 @@ class Lab {
     return !model.systems.some((item) => item !== chosen && item.own.some(fits)) || Boolean(chosen && chosen.own.some(fits));
   }
 
+  // Runs of the situation in hand of which nothing but how they come out is wanted.
+  openForMap() {
+    const { data } = this.situation, { mapped } = this;
+    if (!mapped || mapped.system !== this.system) return this.engine.open(data, []);
+    const measures = data.measures.map(([how, name, ...when]) => [mapped.lastIsSmallest.includes(name) ? "last" : how, name, ...when]);
+    return mapped.engine.open({ ...data, measures }, []);
+  }
+
   // The whole run with the driver modelled, and how it came out.
   ghost() {
     const { situation, whole } = this, begun = performance.now();
@@ -54,7 +64,7 @@ class Lab {
 
 // Outcomes of many runs that differ in two parameters, one row of the grid after the other.
 function* gridOf(lab, [a, b], rows) {
-  const course = lab.engine.open(lab.situation.data, []), times = lab.situation.data.times;
+  const course = lab.openForMap(), times = lab.situation.data.times;
   for (const [number, y] of b.values.entries()) {
     const cells = a.values.map((x) => {
       const situation = new Situation(lab.situation.data, lab.engine.models, { ...lab.situation.changes, [a.name]: x, [b.name]: y });
@@ -66,11 +76,17 @@ function* gridOf(lab, [a, b], rows) {
   course.close();
 }
 
+// A lab for maps, from the bytes of both modules and the data of the page.
+async function startMapLab({ codes, mapped, ...data }) {
+  const [engine, own] = await Promise.all(codes.map((code) => code.byteLength ? Engine.start(code, data.models) : null));
+  return new Lab(engine, data, own && { ...mapped, engine: own });
+}
+
 // What a worker does: the same models, the same judge.
 function work() {
   let started = null;
   self.onmessage = async ({ data }) => {
-    if (data.code) { started = Engine.start(data.code, data.models).then((engine) => new Lab(engine, data)); return; }
+    if (data.codes) { started = startMapLab(data); return; }
     const lab = await started;
     lab.load(data.scenario, data.changes);
     const begun = performance.now();

@@ -17,7 +17,7 @@ class Page {
   computed = 0; // when the ghost was last computed [ms]
   shownAt = 0; // when numbers and words were last written [ms]
 
-  constructor(lab, data, code) {
+  constructor(lab, data, codes) {
     this.lab = lab;
     this.driver = new Driver();
     this.sounds = new Sounds();
@@ -25,7 +25,7 @@ class Page {
     this.drive.onEnd = () => this.ended();
     this.drive.onStep = () => { this.prompted(); this.chart.note(this.drive); };
     this.whatIf = new WhatIf(lab, () => this.changed());
-    this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
+    this.map = new Grid(lab, codes, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
     this.chart = new LiveChart();
     this.charts = data.charts;
     /** @type {any} */
@@ -246,8 +246,8 @@ function decoded(text) { try { return decodeURIComponent(text); } catch { return
 async function start() {
   const begun = performance.now();
   const data = await unpack($("data").textContent.trim());
-  const code = await inflate($("module").textContent.trim());
-  const lab = new Lab(await Engine.start(code, data.models), data), page = new Page(lab, data, code);
+  const codes = await Promise.all(["module", "mapped"].map((id) => inflate($(id).textContent.trim())));
+  const lab = new Lab(await Engine.start(codes[0], data.models), data), page = new Page(lab, data, codes);
   const { name, changes, only, wrong, plays } = fromAddress(lab, data.scenarios[0].name);
   lab.only = only;
   document.documentElement.classList.toggle("embedded", only.length > 0);

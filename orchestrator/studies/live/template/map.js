@@ -4,14 +4,14 @@ const CELLS = 20, FARTHEST = 300; // along a side; distance of the last colour [
 const OUTCOME_COLOR = { parked: "good", finished: "good", not_parked: "warn", not_finished: "warn", failed: "bad", aborted: "bad" };
 
 class Grid {
-  constructor(lab, code, data, onPick) {
+  constructor(lab, codes, data, onPick) {
     this.lab = lab;
     this.onPick = onPick;
     this.rows = [];
     this.at = [0, 0];
     this.id = 0;
-    this.code = code;
-    this.data = data;
+    const { models, numbers, scenarios, pins, mapped } = data;
+    this.parts = { codes, models, numbers, scenarios, pins, mapped };
     $("map-go").addEventListener("click", () => this.start());
     for (const id of ["map-x", "map-y"]) $(id).addEventListener("change", () => this.ranges());
     $("map-color").addEventListener("change", () => { this.key(); this.draw(); });
@@ -33,8 +33,7 @@ class Grid {
     const source = `"use strict";\n${$("core").textContent}\n${work.name}();`;
     this.hand = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
     this.hand.onmessage = ({ data }) => this.take(data);
-    const { models, numbers, scenarios, pins } = this.data;
-    this.hand.postMessage({ code: this.code, models, numbers, scenarios, pins });
+    this.hand.postMessage(this.parts);
     return this.hand;
   }
 

@@ -88,3 +88,7 @@ def test_a_trail_has_the_poses_it_is_given() -> None:
     message = PosesInFrame.FromString(trail(1_500_000_000, trail_poses(np.array(poses))))
     assert message.timestamp.ToNanoseconds() == 1_500_000_000
     assert list(message.poses) == [planar_pose(*pose) for pose in poses]
+
+
+def test_a_block_without_a_point_of_the_trail_adds_none() -> None:
+    assert trail_poses(np.empty((0, 3))) == []

@@ -223,7 +223,7 @@ def trail_poses(poses: Array) -> list[bytes]:
     rows = np.repeat(TRAIL_TEMPLATE, len(poses), axis=0)
     x, y, heading = poses.T
     for place, values in zip(TRAIL_PLACES, (x, y, np.sin(0.5 * heading), np.cos(0.5 * heading)), strict=True):
-        np.ndarray(len(rows), np.float64, rows.data, place, rows.shape[1:])[:] = values
+        rows[:, place : place + 8] = values.reshape(-1, 1).view(np.uint8)
     return [row.tobytes() for row in rows]
 
 

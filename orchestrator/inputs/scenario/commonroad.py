@@ -18,40 +18,9 @@ TYRE = {"p_ky1": -21.92, "p_dy1": 1.0489}
 """Of the tyre that all its cars have, if the file has none of its own: slip stiffness over load, friction."""
 GROUPS = ("steering", "longitudinal", "tire")
 KEYS = (
-    *(
-        "l",
-        "w",
-        "a",
-        "b",
-        "m",
-        "m_s",
-        "m_uf",
-        "m_ur",
-        "I_Phi_s",
-        "I_y_s",
-        "I_z",
-        "I_xz_s",
-        "K_sf",
-        "K_sdf",
-        "K_sr",
-        "K_sdr",
-    ),
-    *(
-        "T_f",
-        "T_r",
-        "K_ras",
-        "K_tsf",
-        "K_tsr",
-        "K_rad",
-        "K_zt",
-        "h_cg",
-        "h_raf",
-        "h_rar",
-        "h_s",
-        "I_uf",
-        "I_ur",
-        "I_y_w",
-    ),
+    *("l", "w", "a", "b", "m", "m_s", "m_uf", "m_ur", "I_Phi_s", "I_y_s", "I_z", "I_xz_s"),
+    *("K_sf", "K_sdf", "K_sr", "K_sdr", "T_f", "T_r", "K_ras", "K_tsf", "K_tsr", "K_rad"),
+    *("K_zt", "h_cg", "h_raf", "h_rar", "h_s", "I_uf", "I_ur", "I_y_w"),
     *("K_lt", "R_w", "T_sb", "T_se", "D_f", "D_r", "E_f", "E_r"),
 )
 MARKS = frozenset(("l", "w", "a", "b", "steering"))

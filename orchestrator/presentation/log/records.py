@@ -140,16 +140,8 @@ def iterate_records(data: ByteSource) -> Iterator[RawRecord]:
 
     The indexes of messages are left out.
     """
-    budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
-    for head in record_heads(data):
-        if head.opcode == Opcode.DATA_END:
-            return
-        if head.opcode == Opcode.CHUNK:
-            for item in chunk_records(read_record(data, head), budget):
-                budget -= len(item.body)
-                yield item
-        elif head.opcode != Opcode.MESSAGE_INDEX:
-            yield read_record(data, head)
+    for item in iterate_chunks(data):
+        yield from _records_in(item.body, item.at) if item.opcode == Opcode.CHUNK else (item,)
 
 
 def iterate_chunks(data: ByteSource) -> Iterator[RawRecord]:
@@ -201,15 +193,20 @@ def read_record(data: ByteSource, head: RecordHead) -> RawRecord:
     return RawRecord(head.at, head.opcode, data[head.at + HEAD.size : head.end])
 
 
-def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[RawRecord]:
+def chunk_records(piece: RawRecord) -> Iterator[RawRecord]:
     """Yield the records of a chunk. Raises ``Damage`` if it is not what its checksum says, or has more than may be."""
-    data = memoryview(_chunk_bytes(piece, budget))
+    yield from _records_in(_chunk_bytes(piece, MOST_UNPACKED), piece.at)
+
+
+def _records_in(content: bytes, place: int) -> Iterator[RawRecord]:
+    """Yield the records of what a chunk at byte ``place`` unpacks to. Raises ``Damage``."""
+    data = memoryview(content)
     at = 0
     while at < len(data):
-        head = record_head(bytes(data[at : at + HEAD.size]), piece.at, len(data) - at)
+        head = record_head(bytes(data[at : at + HEAD.size]), place, len(data) - at)
         begin = at + HEAD.size
         at = begin + head.size
-        yield RawRecord(piece.at, head.opcode, data[begin:at])
+        yield RawRecord(place, head.opcode, data[begin:at])
 
 
 def chunk_times(piece: RawRecord) -> tuple[int, int]:

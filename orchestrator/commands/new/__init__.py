@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         if kind != "controller":
             raise BadInput("is for apa new controller", key="--from")
         return _policy(arguments.out, name, arguments.policy, arguments.period)
-    return _pipelines(arguments.out, name) if kind == "ci" else _package(kind, arguments.out, name)
+    return _write_pipelines(arguments.out, name) if kind == "ci" else _package(kind, arguments.out, name)
 
 
 def _package_name(name: str) -> str:
@@ -216,12 +216,6 @@ def _study(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _pipelines(out: Path, name: str) -> int:
-    """Write what a server runs at every push: tests the package, ships it."""
-    _write_pipelines(out, name, "")
-    return 0
-
-
 def _pipelines_of_fmu(arguments: argparse.Namespace) -> int:
     """Write pipelines that check an FMU and test its scenario, which is written where there is none."""
     name = _file_name(arguments.name or _stem(arguments.fmu))
@@ -237,8 +231,7 @@ def _pipelines_of_fmu(arguments: argparse.Namespace) -> int:
         if arguments.scenario:
             raise BadInput("no such file", file=scenario)
         _write_system(scenario, name, BASE, files)
-    _write_pipelines(arguments.out, name, FOR_FMU, **words)
-    return 0
+    return _write_pipelines(arguments.out, name, FOR_FMU, **words)
 
 
 def _relative_path(folder: Path, place: str) -> str:
@@ -250,12 +243,14 @@ def _check_new(out: Path, name: str) -> None:
         _new_file(out / place.format(name=name))
 
 
-def _write_pipelines(out: Path, name: str, kind: str, **words: str) -> None:
+def _write_pipelines(out: Path, name: str, kind: str = "", **words: str) -> int:
+    """Write what a server runs at every push: tests and ships the package, or tests the FMU."""
     _check_new(out, name)
     files = {template: out / place.format(name=name) for template, place in PIPELINES.items()}
     for template, file in files.items():
         _write(TEMPLATE_FOLDER / "ci" / f"{kind}{template}{SUFFIX}", file, name, **words)
     print(f"{', '.join(map(str, files.values()))}\nnext: write into them where apa-cosim is installed from")
+    return 0
 
 
 def _new_file(file: Path) -> Path:

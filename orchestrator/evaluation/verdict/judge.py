@@ -121,22 +121,9 @@ def _signal_names() -> frozenset[str]:
 def _not_judged(item: Requirement) -> Check:
     known = NUMBERS[item.signal].unit if item.signal in NUMBERS else item.unit or "1"
     limit = item.limit if isinstance(item.limit, float) else math.nan
-    return Check(
-        id=item.id,
-        limit=limit,
-        value=math.nan,
-        passed=False,
-        source=item.source,
-        unit=known,
-        margin=math.nan,
-        required=item.required,
-        t=0.0,
-        signal=item.signal,
-        condition=item.condition,
-        note="not measured",
-        limit_name=item.limit if isinstance(item.limit, str) else "",
-        evaluated=False,
-    )
+    name = item.limit if isinstance(item.limit, str) else ""
+    lacking = {"passed": False, "note": "not measured", "limit_name": name, "evaluated": False}
+    return _verdict(item, _Worst(item, limit), limit, known, {}).model_copy(update=lacking)
 
 
 class _Worst:

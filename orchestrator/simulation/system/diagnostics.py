@@ -160,16 +160,14 @@ def _open_inputs(number: int, system: ElaboratedSystem) -> list[str]:
     if not names:
         return []
     is_optional = (
-        instance.name in MODELS and not any(names.values()) and not set(names) & _mandatory_inputs(instance.name)
+        instance.name in MODELS
+        and not any(names.values())
+        and not set(names) & set(NEEDED_INPUTS.get(instance.name, ()))
     )
     known = {item.name for item in variables(MODELS[instance.name].inputs)} if instance.name in MODELS else set()
     kind = NOTE if is_optional and set(names) <= known else ""
     listed = _few([f"{name} ({meant.removeprefix('; ')})" if meant else name for name, meant in names.items()])
     return [f"{kind}unconnected inputs of {instance.name} (start values are used): {listed}"]
-
-
-def _mandatory_inputs(name: str) -> set[str]:
-    return set(NEEDED_INPUTS.get(name, ()))
 
 
 def without_consumer(number: int, system: ElaboratedSystem) -> list[str]:

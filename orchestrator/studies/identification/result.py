@@ -114,7 +114,7 @@ def sentence(item: Undetermined) -> str:
     drive = item.manoeuvre or item.further_signals
     if drive:
         more = ", with pose, speed, steering-wheel angle and odometry in the log" if not item.manoeuvre else ""
-        widths = ", ".join(f"{name} ± {_digits(width)}" for name, width in item.half_widths.items())
+        widths = ", ".join(f"{name} ± {width:.2g}" for name, width in item.half_widths.items())
         remedies.append(f"drive {drive}{more} (expected: {widths})")
     return f"{names}: {what}" + (f"; {', or '.join(remedies)}" if remedies else "; no known manoeuvre identifies it")
 
@@ -155,7 +155,3 @@ def _round_text(value: float, digits: int) -> str:
 
 def _decimals(half_width: float) -> int:
     return int(min(max(1 - math.floor(math.log10(max(half_width, 1e-12))), 0), 9))
-
-
-def _digits(value: float) -> str:
-    return f"{value:.2g}"

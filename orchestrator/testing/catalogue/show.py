@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from itertools import groupby
 from pathlib import Path
 
+from rich.markup import escape
 from rich.table import Table
 
 from fmus.files import write_whole
@@ -43,7 +44,7 @@ def verdict_tables(verdicts: list[ClauseVerdict]) -> list[Table]:
         for item in items:
             colour = {MET: "green", MISSED: "red"}.get(item.word, "yellow")
             why = "" if item.word == MET else item.why
-            table.add_row(item.entry.clause, item.entry.id, item.entry.sure, f"[{colour}]{item.word}[/]", _plain(why))
+            table.add_row(item.entry.clause, item.entry.id, item.entry.sure, f"[{colour}]{item.word}[/]", escape(why))
         tables.append(table)
     return tables
 
@@ -98,7 +99,3 @@ def _run_item(tried: ClauseRun) -> str:
     found = "".join(f"<li>{html.escape(text)}</li>" for text in texts if text)
     outcome = html.escape(tried.outcome.replace("_", " "))
     return f'<li><a href="{name}/report.html">{name}</a> {outcome}<ul>{found}</ul></li>'
-
-
-def _plain(text: str) -> str:
-    return text.replace("[", r"\[")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
-from fmus.systems.fmu_facts import BASE, UnitScale
+from fmus.systems.fmu_facts import BASE
 from fmus.systems.read_ssp import SspError, SspSystem, as_written, fmu_in, read_ssp
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.text.errors import BadInput, excerpt
@@ -52,15 +52,11 @@ def ssp_system(path: Path) -> dict[str, Any]:
         "connections": {**as_written(system), **values},
         "by_name": False,
         "units": {
-            name: {**dict(zip(BASE, scale.exponents, strict=True)), **_affine(scale)}
+            name: {**dict(zip(BASE, scale.exponents, strict=True)), "factor": scale.factor, "offset": scale.offset}
             for name, scale in system.scales.items()
         },
         "ignored": system.ignored,
     }
-
-
-def _affine(scale: UnitScale) -> dict[str, float]:
-    return {"factor": scale.factor, "offset": scale.offset}
 
 
 def _read(path: Path) -> SspSystem:

@@ -108,10 +108,7 @@ def bench_controllers(library: Any) -> None:
         cost = step_cost(library, scenario)
         record(f"control step, {name}, CPython", cost.python, "us")
         record(f"control step, {name}, compiled", cost.compiled, "us")
-        print(
-            f"{name:24s}{cost.python:10.1f}{cost.compiled:10.2f}{cost.steps:10d}{cost.slowest:14.2f}",
-            flush=True,
-        )
+        print(f"{name:24s}{cost.python:10.1f}{cost.compiled:10.2f}{cost.steps:10d}{cost.slowest:14.2f}", flush=True)
 
 
 def replay(params: Any, seen: list[Any], step_ns: int) -> tuple[list[float], list[float]]:

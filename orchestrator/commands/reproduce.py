@@ -9,8 +9,8 @@ from fmus.files import write_whole
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import NOT_PARKED, PARKED
 from orchestrator.inputs.text.locked_folder import lock_folder
+from orchestrator.session.options import add_fmus_argument
 from orchestrator.simulation.cosim.fmu_files import fmu_files
-from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 from orchestrator.studies.papers.papers import paper, papers
 
 if TYPE_CHECKING:
@@ -29,12 +29,7 @@ exit codes: 0 all checks of this project hold, 1 one does not, 2 bad input
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("paper", metavar="PAPER", help=f"{', '.join(papers())} or all")
-    parser.add_argument(
-        "--fmus",
-        choices=(*KINDS, "none"),
-        default=default_kind(),
-        help="kind of FMU (default: native where it can be built); none runs the models in process",
-    )
+    add_fmus_argument(parser)
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="output folder of figures (default: runs/reproduce/PAPER)"
     )

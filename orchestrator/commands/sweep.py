@@ -49,9 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", action="store_true", help="continue an unfinished study")
     parser.add_argument("--restart", action="store_true", help="discard the runs of an unfinished study")
     parser.add_argument(
-        "--fmus",
-        choices=(*KINDS, "none"),
-        help="FMUs of this kind, or none, instead of the compiled batch",
+        "--fmus", choices=(*KINDS, "none"), help="FMUs of this kind, or none, instead of the compiled batch"
     )
     parser.add_argument(
         "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: local workers, or those of a scheduler"

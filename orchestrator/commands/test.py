@@ -19,12 +19,11 @@ from orchestrator.inputs.text.errors import INTERRUPTED, BadInput
 from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.inputs.text.readable import shortly
 from orchestrator.session.foreign import Files, foreign_of
-from orchestrator.session.options import add_foreign_arguments
+from orchestrator.session.options import add_fmus_argument, add_foreign_arguments
 from orchestrator.session.provenance import start_record
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.interrupts import on_interrupt
-from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.catalogue.entries import is_catalogue
 from orchestrator.testing.suite.collection import write_collection
@@ -59,12 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="names, patterns of names, or YAML files")
     add_foreign_arguments(parser)
-    parser.add_argument(
-        "--fmus",
-        choices=(*KINDS, "none"),
-        default=default_kind(),
-        help="kind of the shipped FMUs (default: native where it can be built)",
-    )
+    add_fmus_argument(parser)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as in apa run, for all")
     parser.add_argument(
         "--requirements", action="append", default=[], metavar="FILE", help="further requirements, or a shipped set"

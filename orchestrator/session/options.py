@@ -1,10 +1,11 @@
-"""The options for FMUs of others, as several commands have them; imports little."""
+"""The options for FMUs and output, as several commands have them; imports little."""
 
 import argparse
 import re
 from pathlib import Path
 
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.kinds import KINDS, default_kind
 from orchestrator.simulation.imported.limits import MEMORY_BYTES, RUN_TIMEOUT, STEP_TIMEOUT
 
 
@@ -46,6 +47,16 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
         "--in-process",
         action="store_true",
         help="run a third-party FMU in this process: faster; a crash of the FMU ends apa",
+    )
+
+
+def add_fmus_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says which of the shipped FMUs are used."""
+    parser.add_argument(
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=default_kind(),
+        help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
 
 

@@ -20,7 +20,7 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.sweep.batch import run_batch, run_recorded
-from orchestrator.studies.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to, truths
+from orchestrator.studies.sweep.job import Chunk, arrays, chunk_scenario, job_from, truths
 from orchestrator.studies.sweep.rows import row_of, why_not_compiled
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge
 
@@ -263,7 +263,7 @@ def test_a_table_of_a_version_with_other_parameters_sets_those_it_names(bind: An
     """Places are those of the models now: an older version may have had one more before, or one less."""
     keys = {"vehicle.ultrasonic.noise": [0.01], "vehicle.odometry.radius_error": [0.002], "stop_time": [50.0]}
     _, _, job, _ = bind(runs={"grid": keys})
-    older = {**job_to(job), "places": [place + 1 for place in job.places]}
+    older = {**job._asdict(), "places": [place + 1 for place in job.places]}
     older["seeded"] = [(owner, name, place + 1) for owner, name, place in job.seeded]
     again = job_from(json.loads(json.dumps(older)))
     ours = [owner in job.scenario for owner in job.owners]
@@ -272,7 +272,7 @@ def test_a_table_of_a_version_with_other_parameters_sets_those_it_names(bind: An
     ]
     assert again.seeded == job.seeded
     with pytest.raises(KeyError, match="gone"):
-        job_from(json.loads(json.dumps({**job_to(job), "names": ["gone", *job.names[1:]]})))
+        job_from(json.loads(json.dumps({**job._asdict(), "names": ["gone", *job.names[1:]]})))
 
 
 def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, some: Any) -> None:

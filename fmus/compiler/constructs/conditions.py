@@ -245,9 +245,4 @@ def _choice_by_if(
     return hoist(body, value, "chosen") if is_scalar(value.kind) else value
 
 
-EXPRESSIONS |= {
-    ast.Compare: comparison,
-    ast.BoolOp: boolean,
-    ast.UnaryOp: unary_or_not,
-    ast.IfExp: choice,
-}
+EXPRESSIONS |= {ast.Compare: comparison, ast.BoolOp: boolean, ast.UnaryOp: unary_or_not, ast.IfExp: choice}

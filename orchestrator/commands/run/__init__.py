@@ -4,8 +4,7 @@ import argparse
 from contextlib import nullcontext
 
 from orchestrator.presentation.drawing.picture_process import PictureBeside
-from orchestrator.session.options import add_foreign_arguments, add_output_arguments
-from orchestrator.simulation.cosim.kinds import KINDS, default_kind
+from orchestrator.session.options import add_fmus_argument, add_foreign_arguments, add_output_arguments
 
 DEFAULT_PORT = 8765
 """Default port of Foxglove's streams."""
@@ -27,12 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="vehicle.KEY, controller.KEY or a scenario key"
     )
-    parser.add_argument(
-        "--fmus",
-        choices=(*KINDS, "none"),
-        default=default_kind(),
-        help="kind of FMU (default: native where it can be built); none runs the models in process",
-    )
+    add_fmus_argument(parser)
     add_foreign_arguments(parser)
     parser.add_argument("--realtime", action="store_true", help="run in real time; report lateness")
     parser.add_argument(

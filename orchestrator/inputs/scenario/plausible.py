@@ -50,12 +50,7 @@ def plausible(variable: Variable) -> tuple[float, float]:
 
 def implausible(scenario: Scenario) -> list[str]:
     """Return a sentence for each number of a scenario that is allowed but hardly meant."""
-    return [
-        *_parameters(scenario),
-        *_places(scenario),
-        *_gaps(scenario),
-        *_faults(scenario),
-    ]
+    return [*_parameters(scenario), *_places(scenario), *_gaps(scenario), *_faults(scenario)]
 
 
 def is_implausible(value: float, variable: Variable) -> str:

@@ -75,11 +75,7 @@ def build(kind: str, cc: str | None = None) -> list["Built"]:
 
 
 def build_into(
-    folder: Path,
-    kind: str,
-    platforms: Iterable[str] = (),
-    cc: str | None = None,
-    models: Iterable[Model] | None = None,
+    folder: Path, kind: str, platforms: Iterable[str] = (), cc: str | None = None, models: Iterable[Model] | None = None
 ) -> list["Built"]:
     """Build the FMUs of ``kind`` into ``folder``/``kind``; native ones for ``platforms``, by default this machine's.
 

@@ -12,12 +12,7 @@ from typing import Any
 
 import numpy as np
 from fmpy import extract
-from fmpy.fmi2 import (
-    FMU2Slave,
-    defaultCallbacks,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-)
+from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model

@@ -11,9 +11,7 @@ from orchestrator.simulation.system.assemble import ElaboratedSystem
 from orchestrator.simulation.system.units import scale_of
 
 NEEDED = {
-    "controller": {
-        "manoeuvres": "limits on the number of manoeuvres are not evaluated",
-    },
+    "controller": {"manoeuvres": "limits on the number of manoeuvres are not evaluated"},
     "vehicle": {
         "pose.x": "the final position is not evaluated",
         "pose.y": "the final position is not evaluated",

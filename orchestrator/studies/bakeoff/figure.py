@@ -15,13 +15,7 @@ from orchestrator.presentation.drawing.save import save
 from orchestrator.studies.bakeoff.drives import REFUSED, Drive, exact_limits
 from orchestrator.studies.bakeoff.entries import CONTROLLERS, SLOTS
 
-COLOURS = {
-    "ntbptcwpt": "#1f5fbf",
-    "ntbpt": "#7fa8dd",
-    "adaptive": "#c9a227",
-    "zhang2022": "#d1602a",
-    "hsic": "#2b8a5a",
-}
+COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "adaptive": "#c9a227", "zhang2022": "#d1602a", "hsic": "#2b8a5a"}
 BAR_WIDTH = 0.14
 """Width of a bar; the slots lie 1 apart."""
 

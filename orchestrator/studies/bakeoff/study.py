@@ -44,8 +44,7 @@ MEDIANS: tuple[Callable[[Drive], float], ...] = (
     lambda item: item.effort / (2.0 * math.pi),
 )
 TIME = DerivedParameter(
-    {"time": Metric("s", "from the start until the vehicle is parked")},
-    lambda columns: {"time": _times(columns)},
+    {"time": Metric("s", "from the start until the vehicle is parked")}, lambda columns: {"time": _times(columns)}
 )
 
 

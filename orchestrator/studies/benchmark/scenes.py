@@ -13,13 +13,7 @@ from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_n
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import sources_hash
-from orchestrator.studies.benchmark.driving import (
-    BODIES,
-    KINEMATIC,
-    DrivenScene,
-    SceneRun,
-    drive_scene,
-)
+from orchestrator.studies.benchmark.driving import BODIES, KINEMATIC, DrivenScene, SceneRun, drive_scene
 from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
 

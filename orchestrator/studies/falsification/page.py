@@ -11,7 +11,7 @@ from orchestrator.studies.falsification.counterexamples import Counterexample, f
 from orchestrator.studies.falsification.falsify import FalsificationResult
 from orchestrator.studies.falsification.sensitivity import Index
 from orchestrator.studies.falsification.subject import Subject
-from orchestrator.studies.sweep.page.page import html_table, study_style
+from orchestrator.studies.sweep.page.page import card, html_table, study_style
 from orchestrator.studies.sweep.study.space import Factor
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
@@ -19,7 +19,6 @@ BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subti
 <main class="study">{cards}</main>
 <footer>Evidence about these models over the stated ranges, not about a car.</footer>
 """
-CARD = '<section class="card"><h2>{title}</h2><p>{text}</p>{inner}</section>'
 SHOWN_FACTORS = 20
 """Factors in the table of influences."""
 escape = html.escape
@@ -135,12 +134,12 @@ def _counterexamples(subject: Subject, result: FalsificationResult) -> str:
     text = "Each with the fewest and smallest disturbances (in brackets: nominal). Run one: "
     text += "<code>apa run counterexamples/NAME.yaml</code>; the same bits as when it was found."
     heads = ("scenario", "what happens", "what it needs", "of other seeds")
-    return CARD.format(title="Finds", text=text if rows else "None.", inner=html_table(heads, rows) if rows else "")
+    return card("Finds", text if rows else "None.", html_table(heads, rows) if rows else "")
 
 
 def _bounds(result: FalsificationResult) -> str:
     text = "<br>".join(escape(line) for line in bound_text(result))
-    return CARD.format(title="Probability of violation", text=text, inner="")
+    return card("Probability of violation", text)
 
 
 def _influences(result: FalsificationResult) -> str:
@@ -157,7 +156,7 @@ def _influences(result: FalsificationResult) -> str:
         "Sobol indices of the margin with 95 % intervals: the share of its variance that goes with a factor alone "
         "(first), and with all that it has a part in (total)."
     )
-    return CARD.format(title="Sensitivity", text=text, inner=html_table(("factor", "first", "total"), rows))
+    return card("Sensitivity", text, html_table(("factor", "first", "total"), rows))
 
 
 def _index(index: Index | None) -> str:
@@ -175,7 +174,7 @@ def _ranges(subject: Subject) -> str:
         )
         for item in subject.space.factors
     ]
-    return CARD.format(title="Ranges", text="", inner=html_table(("factor", "range", "nominal", ""), rows))
+    return card("Ranges", "", html_table(("factor", "range", "nominal", ""), rows))
 
 
 def _unit(factor: Factor) -> str:

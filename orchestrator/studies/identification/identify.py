@@ -6,13 +6,7 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.studies.identification.compiled_vehicle import CompiledVehicle
 from orchestrator.studies.identification.estimate import estimate
 from orchestrator.studies.identification.identifiability import identifiability
-from orchestrator.studies.identification.parameter import (
-    DRIVE,
-    GEOMETRY,
-    ODOMETRY,
-    STEERING_ACTUATOR,
-    candidate,
-)
+from orchestrator.studies.identification.parameter import DRIVE, GEOMETRY, ODOMETRY, STEERING_ACTUATOR, candidate
 from orchestrator.studies.identification.playback import WITHOUT_ACTUATOR, WITHOUT_DRIVE
 from orchestrator.studies.identification.problem import Problem
 from orchestrator.studies.identification.result import Identification

@@ -18,13 +18,7 @@ from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.studies.identification.compiled_vehicle import OUTPUTS, PARAMETERS, SIGNALS
 from orchestrator.studies.identification.frames import FrameFit
-from orchestrator.studies.identification.result import (
-    Identification,
-    interval_text,
-    notes,
-    sentence,
-    value_text,
-)
+from orchestrator.studies.identification.result import Identification, interval_text, notes, sentence, value_text
 from orchestrator.studies.identification.signals import FRAMES, unit_of
 
 PREFIX = "vehicle."

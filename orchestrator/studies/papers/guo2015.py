@@ -31,10 +31,7 @@ TANGENT_TIME = {1: (9.5, 0.475), 2: (3.5, 0.175), 4: (3.59, TIME_TOLERANCE)}
 POSE_TOLERANCE = 0.01
 NEAR_HEADING = 5e-3
 """What the poses at Q2 and Q1 may differ by [m], [rad]: less than what a doubled k3 makes of them."""
-SWITCHES = (
-    ("at Q2", "TO_Q2", (-3.078, -0.858, 0.771)),
-    ("at Q1", "TO_Q1", (-3.801, -1.539, 0.761)),
-)
+SWITCHES = (("at Q2", "TO_Q2", (-3.078, -0.858, 0.771)), ("at Q1", "TO_Q1", (-3.801, -1.539, 0.761)))
 """Case 4: what, the phase it ends, and pose as printed."""
 Q1 = (-3.798, -1.522, 0.765)
 Q2 = (-3.077, -0.830, 0.765)

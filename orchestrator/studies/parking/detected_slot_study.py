@@ -22,13 +22,7 @@ WAY = "way"
 PLANNING_TIME = 10.0
 
 
-def study(
-    runs: int = 1000,
-    lot: int = 0,
-    reported: bool = False,
-    out: bool = False,
-    ways: bool = False,
-) -> Study:
+def study(runs: int = 1000, lot: int = 0, reported: bool = False, out: bool = False, ways: bool = False) -> Study:
     """Return so many runs; ``reported``: the same with the map and the target given, no search: what could be parked.
 
     ``out``: the car stands in the slot, receives the map, and comes out to either side. ``ways``: behind every run a

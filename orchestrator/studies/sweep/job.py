@@ -190,13 +190,8 @@ def chunks(design: Design, size: int) -> Iterator[Chunk]:
         yield Chunk(number, first, design.values[first : first + size], design.seeds[first : first + size])
 
 
-def job_to(job: Job) -> dict[str, Any]:
-    """Return a job as plain data for JSON."""
-    return job._asdict()
-
-
 def job_from(data: dict[str, Any]) -> Job:
-    """Return the job that :func:`job_to` wrote, its parameters placed as the models have them now.
+    """Return the job of this plain data, its parameters placed as the models have them now.
 
     ``KeyError`` for a scenario without target, as earlier versions wrote.
     """

@@ -19,7 +19,7 @@ from orchestrator.studies.sweep.batch import compile_models, own_choices
 from orchestrator.studies.sweep.columns import columns_of, fill_columns
 from orchestrator.studies.sweep.engine import Engine
 from orchestrator.studies.sweep.engines import choose_task, make_engine
-from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunks, job_to, make_job
+from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunks, make_job
 from orchestrator.studies.sweep.store import Store
 from orchestrator.studies.sweep.study.imported_fmu import hashes_of
 from orchestrator.studies.sweep.study.study import Study
@@ -142,7 +142,7 @@ def about(study: Study, job: Job) -> dict[str, Any]:
     """Return what a table says about itself: enough to go on with it and to run any row again."""
     return {
         "study": {**study.content, "labels": [*study.design.labels]},
-        "job": job_to(job),
+        "job": job._asdict(),
         "design": study.design.digest(),
         "sources": sources_hash(),
         **({"fmus": hashes_of(study.scenario)} if study.scenario.system is not None else {}),

@@ -5,24 +5,21 @@ The ground truth is the lines: the vehicle is parked in one bay, whichever, and 
 
 import math
 from collections.abc import Mapping
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.evaluation.verdict.standing import in_frames, outline_margin
 from orchestrator.evaluation.verdict.truth import CAR_KEYS
-from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.slot_sizes import ParkingType, shortest_slot
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.cases import CARS, ISO
 from orchestrator.studies.parking.parking_world.factors import NO_BAYS
-from orchestrator.studies.parking.study import GBT_SETS
+from orchestrator.studies.parking.world.ends import claim_limits
 
 F = Mapping[str, Array]
 MAX_BAYS = 3
 POSE = ("x", "y", "heading")
-CLAIMED = ("final heading", "final lateral position", "outline in the slot", "manoeuvres")
 
 
 def bay_count(f: F) -> Array:
@@ -63,7 +60,7 @@ def first_bay(f: F, found: F) -> dict[str, Array]:
 
 def stands_in_a_bay(columns: Mapping[str, Array]) -> NDArray[np.bool_]:
     """Return whether each vehicle stands in one of its empty bays, within GB/T 41630; False where there are none."""
-    turned, aside, out, manoeuvres = _limits()
+    turned, aside, out, manoeuvres = claim_limits(ParkingType.PERPENDICULAR)
     poses = np.column_stack([columns[f"final.{axis}"] for axis in POSE])
     wheelbase, front, rear, width = (np.asarray(columns[key]) for key in CAR_KEYS)
     cars = np.column_stack([wheelbase + front, rear, 0.5 * width, wheelbase])
@@ -78,10 +75,3 @@ def stands_in_a_bay(columns: Mapping[str, Array]) -> NDArray[np.bool_]:
         near = (np.abs(heading) <= turned) & (np.abs(lateral) <= aside) & (outline_margin(poses, slot, cars) >= -out)
         stands |= near & (bay < bay_count(columns))
     return np.asarray(stands & (np.asarray(columns["manoeuvres"]) <= manoeuvres))
-
-
-@cache
-def _limits() -> tuple[float, ...]:
-    """Return how far GB/T 41630 lets a vehicle be turned, aside and out of a perpendicular slot, and its manoeuvres."""
-    required = library_requirements(GBT_SETS[ParkingType.PERPENDICULAR], *CLAIMED)
-    return tuple(abs(float(item.limit)) for item in required)

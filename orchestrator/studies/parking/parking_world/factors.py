@@ -32,12 +32,7 @@ TURN = (
     Factor("person_turn", "1", 0, 0, 3, "before the slots a pedestrian goes", ("on", "on", "forwards", "backwards")),
     Factor("person_turn_at", "m", 0.6, 1.0, 2.0, "from the slots, where a pedestrian turns along the road"),
 )
-WIDER = {
-    "person_speed": (0.5, 2.5),
-    "slope": (-12.0, 12.0),
-    "bank": (-12.0, 12.0),
-    "kerb_height": (0.03, 0.2),
-}
+WIDER = {"person_speed": (0.5, 2.5), "slope": (-12.0, 12.0), "bank": (-12.0, 12.0), "kerb_height": (0.03, 0.2)}
 """Ranges of factors of ``apa-world``, by name."""
 OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN)
 

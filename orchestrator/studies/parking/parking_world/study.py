@@ -68,10 +68,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0, **fixed: float) -> Stu
 def scenario() -> Scenario:
     """Return what all runs share."""
     base = world.scenario()
-    update = {
-        "name": "parking-world",
-        "requirements": [*library_requirements("no-contact")],
-    }
+    update = {"name": "parking-world", "requirements": [*library_requirements("no-contact")]}
     return base.model_copy(update=update)
 
 

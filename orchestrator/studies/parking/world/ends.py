@@ -114,7 +114,7 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
         return False
     travel = math.copysign(min(abs(row["mover_travel"]), _neighbour_travel(row)), row["mover_travel"])
     margin = row["final.outline_margin"] + max(0.0, -travel) if row["kind"] == 0 else _margin(row, 0.5 * travel)
-    turned, aside, out, manoeuvres = _limits_of(int(row["kind"]) + 1)
+    turned, aside, out, manoeuvres = claim_limits(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
     near = heading <= turned and lateral <= aside and margin >= -out
     return bool(near and row["manoeuvres"] <= manoeuvres)
@@ -131,7 +131,7 @@ def _margin(row: Mapping[str, Any], out: float) -> float:
 
 
 @cache
-def _limits_of(kind: int) -> tuple[float, ...]:
+def claim_limits(kind: int) -> tuple[float, ...]:
     """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its manoeuvres."""
     return tuple(abs(float(item.limit)) for item in library_requirements(GBT_SETS[kind], *CLAIMED, "manoeuvres"))
 

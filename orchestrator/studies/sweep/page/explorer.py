@@ -6,14 +6,15 @@ from typing import Any
 import numpy as np
 
 from orchestrator.inputs.scenario.models import MODELS, models_for
-from orchestrator.inputs.scenario.scenario import DONE, MISSED, Scenario
+from orchestrator.inputs.scenario.scenario import DONE, Scenario
 from orchestrator.studies.sweep.job import Job, chunk_scenario
 from orchestrator.studies.sweep.page.statistics import (
     Map,
     axis,
     deciding_limit,
     default_axes,
-    for_people,
+    outcome_kind,
+    value_text,
     varying_columns,
 )
 from orchestrator.studies.sweep.table import Table
@@ -33,6 +34,7 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
     listed = [_rows_of(item, mask, most) for item, mask in zip(shown, chosen, strict=True)]
     rows = sorted({row for cell in listed for found in cell.values() for row in found})
     keys = varying_columns(table)[:MAX_KEYS]
+    columns = {name: table.column(name) for name in ("outcome", "reason", "duration", *keys)}
     data: dict[str, Any] = {
         "maps": [
             {
@@ -45,7 +47,7 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
             for item, cell in zip(shown, listed, strict=True)
         ],
         "heads": [*keys, "deciding limit"],
-        "rows": {row: _run_texts(table, row, keys) for row in rows},
+        "rows": {row: _run_texts(table, columns, row, keys) for row in rows},
     }
     if live:
         data |= _replays(table, rows, live)
@@ -94,41 +96,17 @@ def _rows_of(item: Map, chosen: Any, most: int) -> dict[tuple[int, int], list[in
     return found
 
 
-def _run_texts(table: Table, row: int, keys: list[str]) -> list[Any]:
+def _run_texts(table: Table, columns: dict[str, Any], row: int, keys: list[str]) -> list[str]:
     """Return outcome, its kind, reason, time [s], and the values of a run for people."""
-    found = _columns(table)
-    outcome = str(found["outcome"][row])
-    kind = "good" if outcome in DONE else "warn" if outcome in MISSED.values() else "bad"
-    values = [_value(table, key, found[key][row]) for key in keys]
-    limit = "" if outcome in DONE else deciding_limit(table, row)
+    outcome = str(columns["outcome"][row])
     return [
         outcome.replace("_", " "),
-        kind,
-        str(found["reason"][row]),
-        f"{float(found['duration'][row]):.1f} s",
-        *values,
-        limit,
+        outcome_kind(outcome),
+        str(columns["reason"][row]),
+        f"{float(columns['duration'][row]):.1f} s",
+        *(value_text(table, key, columns[key][row]) for key in keys),
+        "" if outcome in DONE else deciding_limit(table, row),
     ]
-
-
-def _columns(table: Table) -> dict[str, Any]:
-    """Return the columns that lists need, read once."""
-    if not hasattr(table, "columns_of_lists"):
-        names = ["outcome", "reason", "duration", *varying_columns(table)[:MAX_KEYS]]
-        table.columns_of_lists = {name: table.column(name) for name in names}  # type: ignore[attr-defined]
-    found: dict[str, Any] = table.columns_of_lists  # type: ignore[attr-defined]
-    return found
-
-
-def _value(table: Table, key: str, value: Any) -> str:
-    unit, _, states = table.note(key)
-    if states and float(value).is_integer():
-        return states.get(str(int(value)), f"{value:g}").lower()
-    if isinstance(value, bool | np.bool_):
-        return "yes" if value else "no"
-    factor, name = for_people(unit)
-    number = f"{float(value) * factor:.4g}" if isinstance(value, float | int | np.number) else str(value)
-    return number if name == "1" else f"{number} {name}"
 
 
 def _numbers(values: Any) -> list[float]:

@@ -5,14 +5,13 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import yaml
 
 from fmus.files import write_whole
 from orchestrator.evaluation.verdict.confidence import wilson
-from orchestrator.inputs.scenario.scenario import DONE, MISSED
+from orchestrator.inputs.scenario.scenario import DONE
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 from orchestrator.presentation.report.page import still_page
 from orchestrator.studies.sweep.page.explorer import explorer_data
@@ -23,7 +22,9 @@ from orchestrator.studies.sweep.page.statistics import (
     influences,
     maps,
     outcome_counts,
+    outcome_kind,
     success_mask,
+    value_text,
     varying_columns,
     word,
     worst,
@@ -113,7 +114,8 @@ def _facts(table: Table, good: int) -> str:
     return "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in facts.items())
 
 
-def _card(title: str, text: str, body: str) -> str:
+def card(title: str, text: str, body: str = "") -> str:
+    """Return one card of a page; all are HTML."""
     return f'<section class="card"><h2>{title}</h2><p>{text}</p>{body}</section>'
 
 
@@ -129,7 +131,7 @@ def _maps(table: Table) -> str:
     )
     text = f"Share of runs that end {word(table)} within all required limits."
     text += " Point at a cell for its numbers, click it for its runs."
-    return _card("Success", text, f'<div class="maps">{figures}</div>{scale_bar(word(table))}')
+    return card("Success", text, f'<div class="maps">{figures}</div>{scale_bar(word(table))}')
 
 
 def _rate(good: int, count: int) -> str:
@@ -150,7 +152,7 @@ def _reasons(table: Table) -> str:
         )
         for item in outcome_counts(table)
     ]
-    return _card("Outcomes", "", html_table(("outcome", "reason", "runs", "share", "95 % interval", ""), rows))
+    return card("Outcomes", "", html_table(("outcome", "reason", "runs", "share", "95 % interval", ""), rows))
 
 
 def _histograms(table: Table) -> str:
@@ -167,7 +169,7 @@ def _histograms(table: Table) -> str:
             shown = "" if unit == "1" else f" <span class='quiet'>[{unit}]</span>"
             caption = f"<figcaption>{escape(name)}{shown}</figcaption>"
             figures.append(f"<figure>{caption}{histogram(values, good, name, unit, word(table))}</figure>")
-    return _card(
+    return card(
         "Results",
         f"Runs that are {word(table)} in green, the others in red; the end bars hold the 0.5 % beyond.",
         f'<div class="side">{"".join(figures)}</div>',
@@ -191,7 +193,7 @@ def _influences(table: Table) -> str:
         "Share of the variance of a result that goes with one parameter alone (first order; what is missing to 100 % "
         "is joint effects and chance), and Spearman's rank correlation."
     )
-    return _card("Sensitivity: first-order index, rank correlation", text, html_table(heads, rows))
+    return card("Sensitivity: first-order index, rank correlation", text, html_table(heads, rows))
 
 
 def _worst(table: Table) -> str:
@@ -211,23 +213,16 @@ def _worst(table: Table) -> str:
                 _finite("{:+.2f} deg", row["final.heading_error"] / RAD_PER_DEGREE),
                 f"{row['duration']:.1f} s",
                 link + command,
-                *(_value(table, key, row[key]) for key in keys),
+                *(escape(value_text(table, key, row[key])) for key in keys),
             )
         )
     heads = ("row", "outcome", "deciding limit", "lateral", "heading", "time", "replay", *(escape(key) for key in keys))
     text = "The command repeats a row to the same bits, with log and replay."
-    return _card("Largest violations", text, html_table(heads, rows))
+    return card("Largest violations", text, html_table(heads, rows))
 
 
 def _finite(form: str, value: float) -> str:
     return form.format(value) if math.isfinite(value) else ""
-
-
-def _value(table: Table, key: str, value: Any) -> str:
-    state = table.note(key)[2].get(str(int(value))) if isinstance(value, int) else None
-    factor, unit = for_people(table.note(key)[0])
-    number = f"{value * factor:.4g} {unit if unit != '1' else ''}" if isinstance(value, float) else str(value).lower()
-    return escape(state.lower() if state else number)
 
 
 def _about(table: Table) -> str:
@@ -244,8 +239,7 @@ def _about(table: Table) -> str:
 
 
 def _pill(outcome: str) -> str:
-    kind = "good" if outcome in DONE else "warn" if outcome in MISSED.values() else "bad"
-    return f'<span class="pill {kind}">{escape(outcome.replace("_", " "))}</span>'
+    return f'<span class="pill {outcome_kind(outcome)}">{escape(outcome.replace("_", " "))}</span>'
 
 
 def _meter(share: float, kind: str = "") -> str:

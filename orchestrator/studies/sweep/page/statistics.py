@@ -10,7 +10,7 @@ from scipy.stats import rankdata
 from orchestrator.evaluation.verdict.conditions import CONDITIONS
 from orchestrator.evaluation.verdict.confidence import wilson
 from orchestrator.evaluation.verdict.limit_text import requirement_text
-from orchestrator.inputs.scenario.scenario import DONE, SUCCESS, Scenario
+from orchestrator.inputs.scenario.scenario import DONE, MISSED, SUCCESS, Scenario
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 from orchestrator.inputs.text.readable import readable
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -61,6 +61,23 @@ class Influence(NamedTuple):
 def for_people(unit: str) -> tuple[float, str]:
     """Return (factor, unit) in which people read an SI unit: degrees for radians."""
     return (1.0 / RAD_PER_DEGREE, unit.replace("rad", "deg")) if unit.startswith("rad") else (1.0, unit)
+
+
+def value_text(table: Table, key: str, value: Any) -> str:
+    """Return a parameter or label of a run for people: a state by its name, a number with its unit."""
+    unit, _, states = table.note(key)
+    if states and float(value).is_integer():
+        return states.get(str(int(value)), f"{value:g}").lower()
+    if isinstance(value, bool | np.bool_):
+        return "yes" if value else "no"
+    factor, name = for_people(unit)
+    number = f"{float(value) * factor:.4g}" if isinstance(value, float | int | np.number) else str(value)
+    return number if name == "1" else f"{number} {name}"
+
+
+def outcome_kind(outcome: str) -> str:
+    """Return how a page colours an outcome."""
+    return "good" if outcome in DONE else "warn" if outcome in MISSED.values() else "bad"
 
 
 def varying_columns(table: Table) -> list[str]:

@@ -10,7 +10,7 @@ import pytest
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.evaluation.verdict.judge import NEVER, judge
+from orchestrator.evaluation.verdict.judge import NEVER, _signal_names, judge
 from orchestrator.evaluation.verdict.numbers import facts_of
 from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.requirements import Requirement, read_requirements
@@ -126,6 +126,12 @@ def test_numbers_of_the_summary() -> None:
     assert check(signal="max_speed", max="7.2 km/h").margin == pytest.approx(0.0)
     with pytest.raises(BadInput, match="no window"):
         check(signal="duration", max=1, window={"at": "end"})
+
+
+def test_a_number_of_the_summary_is_sought_in_no_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("orchestrator.evaluation.verdict.judge.apart_models", lambda: pytest.fail("imports all"))
+    _signal_names.cache_clear()
+    assert check(signal="duration", max=5.0).passed
 
 
 def test_not_a_number_passes_nothing() -> None:

@@ -98,7 +98,8 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
 def _lacks_signals(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
     """Return whether a requirement needs what our models put out, but the FMUs of this run do not."""
     named = [item.signal, *([item.window.after.signal] if item.window is not None and item.window.after else [])]
-    missing = any(name not in recording.signals and name in _signal_names() for name in named)
+    absent = [name for name in named if name not in recording.signals and name not in NUMBERS]
+    missing = any(name in _signal_names() for name in absent)
     phase = item.window is not None and bool(item.window.phase) and not _has_phases(item.window.phase, recording)
     number = item.signal in numbers and not all(name in recording.signals for name in signals_of(item.signal))
     return missing or phase or number

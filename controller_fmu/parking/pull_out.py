@@ -1,8 +1,9 @@
 """Pulling out of a slot: what the sensors measure at rest as landmarks, and a pose on the road beside the slot.
 
 A neighbour's bumper is measured at rest, its flank is not: it is taken to stand out of the row by ``MAX_STAND_OUT``
-more than the vehicle. Where nothing is measured behind the row, it ends as far off: the way out is on the road's side.
-Such landmarks are updated or contradicted on the way like all others.
+more than the vehicle. The bumper's end there is open: the monitor takes an echo near it for one of the bumper until a
+sensor measures past it. The flank begins behind it, or its corner would explain such echoes. Where nothing is measured
+behind the row, it ends as far off. Such landmarks are updated or contradicted on the way like all others.
 """
 
 import math
@@ -11,7 +12,7 @@ from typing import NamedTuple
 from controller_fmu.common.driver_selection import ChosenSide
 from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.landmark import Landmark, free_index, replace_landmark, segment_between
+from controller_fmu.parking.map.landmark import Landmark, along_of, free_index, replace_landmark, segment_between
 from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
 from controller_fmu.parking.measurement.sensor import (
     BUMPER_SENSORS,
@@ -49,26 +50,22 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
     """
     sensors = car.ultrasonic
     far = CAR_LENGTH + sensors.max_range
-    front = far
-    rear = -far
-    left = far
-    right = -far
+    box = FreeBox(far, -far, far, -far)
     for number in range(MAX_SENSORS):
         mount = sensors.mounts[number]
-        is_middle = number in (FRONT_MIDDLE, FRONT_MIDDLE + 1, REAR_MIDDLE, REAR_MIDDLE + 1)
         status = reading_status(readings[number], sensors)
         if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
             x = mount.x + readings[number] * math.cos(mount.yaw)
             y = mount.y + readings[number] * math.sin(mount.yaw)
-            if number < BUMPER_SENSORS // 2 and is_middle:
-                front = min(front, x)
-            elif number < BUMPER_SENSORS and is_middle:
-                rear = max(rear, x)
+            if number in (FRONT_MIDDLE, FRONT_MIDDLE + 1):
+                box = box._replace(front=min(box.front, x))
+            elif number in (REAR_MIDDLE, REAR_MIDDLE + 1):
+                box = box._replace(rear=max(box.rear, x))
             elif number >= BUMPER_SENSORS and mount.y > 0.0:
-                left = min(left, y)
+                box = box._replace(left=min(box.left, y))
             elif number >= BUMPER_SENSORS:
-                right = max(right, y)
-    return FreeBox(front, rear, left, right)
+                box = box._replace(right=max(box.right, y))
+    return box
 
 
 def is_clear_ahead(readings: tuple[float, ...]) -> bool:
@@ -90,14 +87,15 @@ def with_neighbours(
     far = CAR_LENGTH + car.ultrasonic.max_range
     for ahead in (1.0, -1.0):
         bumper = box.front if ahead > 0.0 else box.rear
-        corner = Point(bumper, road)
+        flank = Point(bumper + ahead * MAX_STAND_OUT, road)
+        tail = Point(bumper + ahead * CAR_LENGTH, road)
         if ahead * bumper < far:
-            landmarks = _with_segment(landmarks, Point(bumper, deep), corner, pose, params)
-            landmarks = _with_segment(landmarks, corner, Point(bumper + ahead * CAR_LENGTH, road), pose, params)
+            landmarks = _with_segment(landmarks, Point(bumper, deep), Point(bumper, road), False, pose, params)
+            landmarks = _with_segment(landmarks, flank, tail, True, pose, params)
     kerb = box.right if side > 0.0 else box.left
     if abs(kerb) >= far:
         kerb = -road
-    return _with_segment(landmarks, Point(box.rear, kerb), Point(box.front, kerb), pose, params)
+    return _with_segment(landmarks, Point(box.rear, kerb), Point(box.front, kerb), True, pose, params)
 
 
 def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline) -> Pose:
@@ -108,15 +106,17 @@ def pose_on_road(box: FreeBox, side: float, pose: Pose, outline: VehicleOutline)
 
 
 def _with_segment(
-    landmarks: tuple[Landmark, ...], a: Point, b: Point, pose: Pose, params: MappingParams
+    landmarks: tuple[Landmark, ...], a: Point, b: Point, is_closed: bool, pose: Pose, params: MappingParams
 ) -> tuple[Landmark, ...]:
     """Return the landmarks with the segment between two points of the vehicle's frame, known to ``MAX_STAND_OUT`` [m].
 
-    It takes a free place, or that of the least confirmed.
+    If it is not closed its end at ``b`` is open. It takes a free place, or that of the least confirmed.
     """
     p = point_from_frame(a.x, a.y, pose)
     q = point_from_frame(b.x, b.y, pose)
     variance = 0.25 * MAX_STAND_OUT * MAX_STAND_OUT
     found = segment_between(p, q, Point(pose.x, pose.y), variance, variance)
-    new = found._replace(start_known=True, end_known=True, confirmations=params.confirmations)
+    ends_at_b = along_of(found, q.x, q.y) > 0.0
+    new = found._replace(start_known=is_closed or ends_at_b, end_known=is_closed or not ends_at_b)
+    new = new._replace(confirmations=params.confirmations)
     return replace_landmark(landmarks, free_index(landmarks), new)

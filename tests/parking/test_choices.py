@@ -53,6 +53,14 @@ def test_the_car_is_handed_over_on_the_road(name: str, files: Any) -> None:
     assert last(recording, "controller.prompt") == Prompt.TAKE_OVER
 
 
+@pytest.mark.parametrize("ahead", [6.65, 6.8])
+def test_a_neighbour_that_protrudes_more_than_is_taken_is_not_touched(ahead: float, files: Any) -> None:
+    """Its corner is 0.1 m nearer to the road than the map takes it, and was passed at 0.9 m/s."""
+    recording, summary = driven("apa-pull-out-right", files, f"vehicle.scene.boxes[2].x={ahead}")
+    assert min(recording.signals["vehicle.clearance"]) > 0.03
+    assert summary.outcome == "finished"
+
+
 def test_both_slots_are_offered_and_the_one_chosen_is_shown(files: Any) -> None:
     recording, _ = driven("apa-choose", files)
     signals = recording.signals

@@ -8,7 +8,10 @@ from controller_fmu.common.driver_selection import ChosenSide, ChosenTask, Drive
 from controller_fmu.parking.chart import Condition, ParkingState, Strategy, next_parking_state
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, offset_of
+from controller_fmu.parking.map.local_map import range_by_map
 from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.predicted_range import predict_range_to_segment
+from controller_fmu.parking.measurement.sensor import SensorPose
 from controller_fmu.parking.monitor.collision_monitor import landmark_distance
 from controller_fmu.parking.outputs import prompt_of
 from controller_fmu.parking.params import ParkingParams
@@ -25,6 +28,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
 from controller_fmu.parking.system import conditions_of, enter_state
 from modelkit.car import Car
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose, Prompt
 
 CAR = Car()
@@ -64,6 +68,23 @@ def test_landmarks_stand_around_the_vehicle_and_leave_the_road_free(side: Chosen
     across = dy * math.cos(pose.heading) - dx * math.sin(pose.heading)
     assert road * across > CAR.width + MAX_STAND_OUT
     assert goal.heading == pose.heading
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("ahead", [1.0, -1.0])
+def test_a_bumper_may_go_on_towards_the_road_until_a_sensor_measures_past_it(side: float, ahead: float) -> None:
+    """Although the plan's polygon of it ends where it is taken to end."""
+    params = MappingParams()
+    box = free_box(BETWEEN_CARS if side > 0.0 else mirrored(BETWEEN_CARS), CAR)
+    found = with_neighbours(NOWHERE, box, side, Pose(), CAR, params)
+    bumper = box.front if ahead > 0.0 else box.rear
+    corner = Point(bumper, side * (0.5 * CAR.width + MAX_STAND_OUT))
+    sensor = SensorPose(bumper - 0.3 * ahead, corner.y - 0.05 * side, ahead, 0.0, 0.5, math.sqrt(0.75))
+    planned = predict_range_to_segment(sensor, Point(bumper, 0.0), corner)
+    near = range_by_map(found, sensor, planned, 0.1, params).surface
+    past = range_by_map(found, sensor, planned, 0.5, params).surface
+    assert min(near.high, -near.low) > 1.0
+    assert min(past.high, -past.low) == pytest.approx(0.05)
 
 
 def test_the_front_is_clear_when_no_sensor_of_its_bumper_measures_anything_near() -> None:

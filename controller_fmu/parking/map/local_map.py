@@ -18,6 +18,7 @@ from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundar
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.map.visibility import (
+    SURFACE_DEVIATION,
     contradict,
     is_contradicted,
     is_in_reach,
@@ -145,18 +146,21 @@ def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
 def range_by_map(
     landmarks: tuple[Landmark, ...], sensor: SensorPose, planned: PredictedRange, free: float, params: MappingParams
 ) -> PredictedRange:
-    """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer.
+    """Return the nearest point of a confirmed landmark in view, open ends extended; else ``planned`` if that is nearer.
 
-    A side does not go on beyond an open end where the sensor measures at least ``free`` [m] through it.
+    A side does not go on beyond an open end where the sensor measures at least ``free`` [m] through it. The plan's
+    polygon of the same side ends at the open end: it counts only if it is nearer by three deviations of a side.
     """
     nearest = planned
+    reach = planned.distance + 3.0 * SURFACE_DEVIATION
     for landmark in landmarks:
-        if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, nearest.distance):
+        if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, reach):
             predicted = predict_range(sensor, with_open_ends_extended(landmark))
             if predicted.distance < free:
                 predicted = predict_range(sensor, landmark)
-            if predicted.distance < nearest.distance:
+            if predicted.distance < reach:
                 nearest = predicted
+                reach = predicted.distance
     return nearest
 
 
@@ -173,8 +177,9 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
         if is_in_reach(local_map.landmarks[number], sensor, measurement.range + CONFIRMING_RANGE):
             landmark = local_map.landmarks[number]
             after = landmark
-            if landmark.contradictions > 0 and is_echo and _is_detected(landmark, sensor, measurement.range):
-                after = landmark._replace(contradictions=0)
+            if landmark.contradictions > 0 and is_echo:
+                innovation = measurement.range - predict_range(sensor, landmark).distance
+                after = landmark._replace(contradictions=0) if abs(innovation) < CONFIRMING_RANGE else landmark
             if is_contradicted(landmark, measurement):
                 is_missed = is_missed or (not is_echo and is_permanent(landmark))
                 if is_credible:
@@ -182,11 +187,6 @@ def contradict_nearer(local_map: LandmarkMap, measurement: Measurement, params: 
             local_map = with_landmark(local_map, number, after)
     missed = count_missed_echo(local_map.missed, measurement.number, measurement.status, is_missed)
     return local_map._replace(missed=missed)
-
-
-def _is_detected(landmark: Landmark, sensor: SensorPose, measured: float) -> bool:
-    """Return whether an echo at ``measured`` [m] confirms a landmark."""
-    return abs(predict_range(sensor, landmark).distance - measured) < CONFIRMING_RANGE
 
 
 def _with_ray(free_space: FreeSpace, measurement: Measurement) -> FreeSpace:

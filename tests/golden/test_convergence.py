@@ -27,16 +27,15 @@ from orchestrator.simulation.cosim.fmu_files import can_compile
 from tests.golden.test_golden import kept
 
 MAX_EXCEPTION_SHARE = 0.05
-MAX_SHARE_OF = {"preview": 0.15}
+MAX_SHARE_OF = {"adaptive": 0.08}
 """Scenario -> the share of its random runs that may end differently, where it is larger.
 
-After 0.96 km it reaches the end of the road one communication step later and 5.1 cm further on; none differs by more
-than 7.0 cm.
+Which manoeuvre follows a stop depends on millimetres there; 9 of 1,000 outcomes differ.
 """
 EXCEPTIONS = {
-    "apa-pull-out-right": "after move 7 the way out counts as free, or one more shuffle is planned",
-    "preview-camera": "the camera frame in which the end of a lap of 194 s is reached",
+    "apa-pull-out-right": "where the first manoeuvre ends",
     "preview-geometry": "the sample at which the end of a lap of 172 s is reached",
+    "preview-single": "none: it leaves the road, and swings after that",
 }
 """Scenario -> the decision that changes."""
 FEW_RUNS = 12

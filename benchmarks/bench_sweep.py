@@ -36,13 +36,13 @@ from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM
 from orchestrator.studies.sweep.sweep import Options, sweep
 
 MOST_ROUNDS = size(9, 1)
-MANOEUVRES = size(2000, 20)
+MANOEUVRES = size(1984, 20)
+"""On one and on two threads each part of the runs fills its lanes."""
 SIZES = size((1_000, 10_000, 100_000), (20,))
 PLAIN, DISTURBED = "guo2015-case4", "apa-parallel-real"
 STARTS = {PLAIN: (-0.01, 0.01), DISTURBED: (1.8, 1.85)}
 """Scenario -> range of the start's y [m]. The disturbed one has tyres, sensor noise and odometry error."""
-DISTURBED_SHARE = 10
-"""Fewer runs are made of the disturbed scenario."""
+DISTURBED_RUNS = size(192, 2)
 SHORT = 0.5
 """Length of the runs whose number is grown [s]."""
 
@@ -107,7 +107,7 @@ def rates() -> None:
     """Print and record runs a second: plain and disturbed, complete, sliced and in lanes, on one, two and all cores."""
     threads = sorted({1, 2, cores()})
     print(f"{'runs a second':39}" + "".join(f"{count:3} threads" for count in threads) + "  processor time of a run")
-    for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, max(2, MANOEUVRES // DISTURBED_SHARE))):
+    for scenario, count in ((PLAIN, MANOEUVRES), (DISTURBED, DISTURBED_RUNS)):
         runs = prepare(scenario, count)
         own = runs.rows.own
         for name, rows in (("complete", runs.rows.complete), ("study code", own[-1]), ("study code in lanes", own[0])):

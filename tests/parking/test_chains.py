@@ -119,6 +119,18 @@ def test_echoes_tell_two_cars_from_one_even_where_the_map_does_not_part_them() -
     assert gap_evidence_of(((0.0, 4.4),), 0.0, 0) < -1.0
 
 
+def test_a_hump_beyond_the_end_of_a_side_is_no_gap_between_two_cars() -> None:
+    """The first echoes are of what stands before the car: nearer, then farther than the corner of its side."""
+    others = (-0.16, -0.07, 0.05, 0.08, 0.03, 0.05, 0.05)
+    chain = EchoChain()
+    for number, x in enumerate(np.arange(-1.6, 5.4, 0.16)):
+        measured = math.hypot(x - min(max(x, 0.0), 4.4), 2.0) + (others[number] if number < len(others) else 0.0)
+        sensor = DOWN._replace(x=float(x), y=2.0)
+        chain = begin_chain(sensor, measured, True) if chain.used == 0 else append_echo(chain, sensor, measured)
+    reading = Measurement(sensor, ReadingStatus.NO_ECHO, 5.0, 1e-4)
+    assert fit_chain(ChainUpdate(chain=chain), reading, True, PARAMS).landmarks[0].gap_evidence < 1.0
+
+
 def test_echoes_of_the_body_that_hid_the_next_are_left_out() -> None:
     """Ranges rise off the corner that is left, then fall towards the next body: its side does not begin before."""
     ranges = (3.32, 3.50, 3.38, 3.31, 3.27, 3.20, 3.14, 3.11, 3.09, 3.10)

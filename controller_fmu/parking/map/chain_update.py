@@ -206,13 +206,13 @@ def _with_gap_evidence(
 def _share_of_cars(length: float) -> float:
     """Return how well cars across the road, one per bay, explain a part of a side of ``length`` [m]: 0 to 1.
 
-    The last one may be observed in part only.
+    The last one may be observed in part only; beyond the side's end there is none.
     """
     excess = max(length - CAR_WIDTH, 0.0)
     bays = math.floor(excess / BAY_WIDTH + 0.5)
     deviation = excess - bays * BAY_WIDTH
     variance = CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA + bays * BAY_SIGMA * BAY_SIGMA
-    return math.exp(-0.5 * deviation * deviation / variance)
+    return math.exp(-0.5 * deviation * deviation / variance) if length > 0.0 else 0.0
 
 
 def first_of_body(chain: EchoChain, variance: float) -> int:

@@ -29,10 +29,8 @@ EACH_CHANGE = (
 )
 """A scenario of each system of one controller, a fault, a driver who takes over; ``make release`` compares all, those
 of a controller apart too, whose WebAssembly takes a compiler a quarter of a minute."""
-WITHIN = {"preview-geometry": 1e-3}
-"""Largest difference of a signal [SI]. 960 m in a loop of high gain: wheel 5e-5 rad, force 1e-3 N, pose 5e-7 m."""
-GROWS = "preview-camera"
-"""A loop on the edge, with a picture 20 ms old: it swings, and grows the last bit of a sine to centimetres."""
+GROW = ("preview-camera", "preview-geometry")
+"""Loops on the edge, one with a picture 20 ms old: they swing, and grow the last bit of a sine to centimetres."""
 REPLANS = "valet-search-60"
 """A search that weighs paths of nearly equal cost: the last bit of a sine, which is another in the C library here,
 decides between them, so page and native FMU drive different paths to the same pose."""
@@ -63,7 +61,7 @@ def test_those_compared_on_each_change_are_shipped() -> None:
     [
         pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release)
         for name in SHIPPED
-        if name not in (GROWS, REPLANS)
+        if name not in (*GROW, REPLANS)
     ],
 )
 def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
@@ -76,7 +74,7 @@ def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
     for signal, theirs in recording.signals.items():
         ours = lines[:, 1 + names.index(signal)]
         exact = recording.variables[signal].kind is not float
-        within = 0.0 if exact else WITHIN.get(name, 1e-6)
+        within = 0.0 if exact else 1e-6
         with np.errstate(invalid="ignore"):
             is_near = bool((np.abs(ours - theirs) <= within).all())  # quicker than what says where
         if not is_near:
@@ -124,7 +122,7 @@ def static_of(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.release
 @pytest.mark.parametrize(
-    "name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "fault-pose-noise", GROWS, REPLANS]
+    "name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "fault-pose-noise", *GROW, REPLANS]
 )
 def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
     name: Any, static_of: Any, run_of_page: Any

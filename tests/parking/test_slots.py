@@ -110,6 +110,17 @@ def test_wide_open_space_is_no_slot() -> None:
     assert slot_after([Box(-6.0, -0.9, 0.0, 4.4, 1.8)], 1, 6.0).type == SlotType.NONE
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_of_a_car_that_is_being_passed_the_corner_behind_is_known(side: float) -> None:
+    local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
+    boxes = [Box(x, 0.9 * side, 0.0, 4.4, 1.8) for x in (-2.2, 8.4)]
+    for _, pose, readings in drive_past(boxes, Pose(-9.0, -side * (CAR.width / 2 + 1.0), 0.0), 14.2, 1, dropout=0.0):
+        local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
+    row = find_row(local_map.landmarks, pose, side, params)
+    ends = [(member.start_known, member.end_known) for member in row.members[: row.used]]
+    assert ends == [(True, False), (True, True)]
+
+
 def row_of(lengths: tuple[float, ...], complete: bool) -> SlotCandidate:
     members = tuple(RowMember(-8.0 * n, -8.0 * n + length, 1.0, complete, complete) for n, length in enumerate(lengths))
     row = SlotRow(members=members + (RowMember(),) * (8 - len(lengths)), used=len(lengths))

@@ -94,6 +94,8 @@ class ChainEnd(NamedTuple):
 
     is_edge: bool
     inset: float
+    is_known: bool
+    """The side ends there: at an edge, or where the chain is split."""
 
 
 class ChainUpdate(NamedTuple):
@@ -144,28 +146,28 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     """Return landmarks and chain after a fit; of a chain of two bodies the first is mapped, the second goes on."""
     chain = update.chain
     last = chain.used - 1
-    begins = ChainEnd(chain.begins_at_edge, OPEN_INSET)
-    ends = ChainEnd(ends_at_edge, OPEN_INSET)
+    begins = ChainEnd(chain.begins_at_edge, OPEN_INSET, chain.begins_at_edge)
+    ends = ChainEnd(ends_at_edge, OPEN_INSET, ends_at_edge)
     begin = first_of_body(chain, reading.variance)
     whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at > 0:
-        parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark))
+        parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark), True)
         first = _fit_part(chain, 0, at - 1, reading, begins, parts)
         second = _fit_part(chain, at, last, reading, parts, ends)
         segments = (whole.landmark, first.landmark, second.landmark)
         if split_gain(chain, at, segments, reading.variance) > SPLIT_CHI_SQUARE:
             first = _with_gap_evidence(first, chain, 0, at - 1, at // 2, reading.variance)
-            update = _put(update, first, (chain.begins_at_edge, True), at, params)
+            update = _put(update, first, at, params)
             update = update._replace(chain=without_echoes_before(chain, at))
             second = _with_gap_evidence(second, chain, at, last, (at + last) // 2, reading.variance)
-            return _put(update, second, (True, ends_at_edge), update.chain.used, params)
+            return _put(update, second, update.chain.used, params)
     if whole.chi_square > MAX_MISFIT * chain.used or not is_explained(
         chain, whole.landmark, reading.sensor, reading.variance
     ):
         return update._replace(chain=update.chain._replace(fitted=update.chain.used))
     whole = _with_gap_evidence(whole, chain, 0, last, at if at > 0 else last // 2, reading.variance)
-    return _put(update, whole, (chain.begins_at_edge, ends_at_edge), update.chain.used, params)
+    return _put(update, whole, update.chain.used, params)
 
 
 def _with_gap_evidence(
@@ -286,12 +288,12 @@ def _fit_part(
 
 def _as_observed(fit: SegmentFit, start: ChainEcho, end: ChainEcho, starts: ChainEnd, ends: ChainEnd) -> SegmentFit:
     """Return a fit that goes on, at an end that is no edge, only as far as its outermost echo shows the line."""
-    segment = fit.landmark
+    segment = fit.landmark._replace(start_known=starts.is_known, end_known=ends.is_known)
     low = segment.start if starts.is_edge else max(segment.start, along_of(segment, start.x, start.y))
     high = segment.end if ends.is_edge else min(segment.end, along_of(segment, end.x, end.y))
-    if low >= high:
-        return fit
-    return fit._replace(landmark=segment._replace(start=low, end=high))
+    if low < high:
+        segment = segment._replace(start=low, end=high)
+    return fit._replace(landmark=segment)
 
 
 def edge_guess(line: Landmark, echo: ChainEcho, sensor: SensorPose, inwards: float, step: float) -> EndGuess:
@@ -388,12 +390,10 @@ def distance_to_segment(segment: Landmark, x: float, y: float) -> float:
     return math.sqrt((u - t) * (u - t) + v * v)
 
 
-def _put(
-    update: ChainUpdate, fit: SegmentFit, are_edges: tuple[bool, bool], echoes: int, params: MappingParams
-) -> ChainUpdate:
+def _put(update: ChainUpdate, fit: SegmentFit, echoes: int, params: MappingParams) -> ChainUpdate:
     """Return landmarks and chain with a chain's landmark set: the chain's renewed, or a new one.
 
-    Its ends are known where edges were passed, ``are_edges`` in the order of the chain, if their place is known well.
+    Its ends are known where edges were passed, if their place is known well.
     A side that the map holds already, from another chain, takes the place of a shorter look at it. A long segment of
     unsure direction is none: the chain went round a corner. A direction is that of the chain's middle; from there to
     its end the odometry drifts over half of its path.
@@ -401,8 +401,8 @@ def _put(
     path = _step(update.chain.echoes[max(echoes - 1, 0)], update.chain.echoes[0])
     segment = fit.landmark
     new = segment._replace(
-        start_known=are_edges[0] and segment.start_variance < KNOWN_SIGMA * KNOWN_SIGMA,
-        end_known=are_edges[1] and segment.end_variance < KNOWN_SIGMA * KNOWN_SIGMA,
+        start_known=segment.start_known and segment.start_variance < KNOWN_SIGMA * KNOWN_SIGMA,
+        end_known=segment.end_known and segment.end_variance < KNOWN_SIGMA * KNOWN_SIGMA,
         confirmations=echoes,
         hh=segment.hh + 0.5 * path * params.heading_variance,
     )

@@ -248,14 +248,16 @@ static void finish(Runner *runner, double *out) {
     courses->busy &= ~over;
 }
 
-/* Whether lanes whose runs are over wait for the others, as far as the lengths of their last runs tell. */
+/* Whether lanes whose runs are over wait for the others, as far as the lengths of their last runs tell. All wait for the
+ * first runs: no length is known yet. */
 static int is_waiting(const Courses *courses) {
-    int64_t sum = 0, longest = 0;
+    int64_t sum = 0, longest = 0, shortest = INT64_MAX;
     LANE_EACH(l) {
         sum += courses->length[l];
         longest = courses->length[l] > longest ? courses->length[l] : longest;
+        shortest = courses->length[l] < shortest ? courses->length[l] : shortest;
     }
-    return lane_any(courses->busy) && LANES * longest - sum < longest;
+    return lane_any(courses->busy) && (shortest == 0 || LANES * longest - sum < longest);
 }
 
 /* No step goes beyond the stop time. */

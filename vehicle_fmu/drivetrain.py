@@ -92,7 +92,10 @@ def along(gear: int) -> float:
 
 
 def press(pedals: Pedals, target: float, car: Rolling, mass: float, p: DriveParams, h: float) -> Pedals:
-    """Return the pedals ``h`` [s] later, on the way to ``target`` [m/s]."""
+    """Return the pedals ``h`` [s] later, on the way to ``target`` [m/s].
+
+    The speed error is that of the middle of the step, extrapolated from the last two.
+    """
     reference = change_speed(pedals.reference, target, p, h)
     idle = creep(car, p)
     if reference == 0.0 and target == 0.0:

@@ -103,7 +103,7 @@ def live_library(
 
 
 def live_files(models: Mapping[str, Model], slices: "Mapping[str, Slice] | None" = None) -> dict[str, str]:
-    """Return the C files; those called ``..._unit.c`` are compiled. Charts of slices do not tell what they decide."""
+    """Return the C files; those called ``..._unit.c`` are compiled. Charts of slices report no decisions."""
     from fmus.native.libraries import model_files, model_unit
 
     files = own_files("live.c", "batch.c", "batch.h", "faults.h", "library.h")

@@ -18,7 +18,7 @@ from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundar
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
 from controller_fmu.parking.map.visibility import (
-    SURFACE_DEVIATION,
+    SIDE_DEVIATION,
     contradict,
     is_contradicted,
     is_in_reach,
@@ -152,7 +152,7 @@ def range_by_map(
     polygon of the same side ends at the open end: it counts only if it is nearer by three deviations of a side.
     """
     nearest = planned
-    reach = planned.distance + 3.0 * SURFACE_DEVIATION
+    reach = planned.distance + 3.0 * SIDE_DEVIATION
     for landmark in landmarks:
         if is_confirmed(landmark, params) and is_in_reach(landmark, sensor, reach):
             predicted = predict_range(sensor, with_open_ends_extended(landmark))

@@ -54,7 +54,7 @@ class SegmentGuess(NamedTuple):
 
 
 class NormalEquations(NamedTuple):
-    """J'WJ and J'Wr (``right``) of shift c [m], turn q [rad], start a and end b [m]; ``chi_square``: the residuals'."""
+    """J'WJ and J'Wr (``right``) of shift c [m], turn q [rad], start a and end b [m]; chi square of the residuals r."""
 
     matrix: tuple[float, ...] = (0.0,) * 9
     """cc, cq, qq, ca, qa, aa, cb, qb, bb: the ends do not couple."""

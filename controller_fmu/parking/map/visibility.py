@@ -21,7 +21,7 @@ from controller_fmu.parking.measurement.predicted_range import (
 )
 from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, in_field_of_view
 
-SURFACE_DEVIATION = 0.02
+SIDE_DEVIATION = 0.02
 """Standard deviation [m] of a vehicle's side from a straight line: bumpers, mirrors, wheels."""
 OPEN_EXTENSION = 1.5
 """Beyond an open end echoes of the same line are expected for this far [m]: the range of monitored echoes."""
@@ -82,7 +82,7 @@ def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
         if not (is_all_in_view if is_short else predicted.origin == EchoOrigin.INTERIOR):
             return False
     along = along_of(landmark, predicted.x, predicted.y)
-    roughness = SURFACE_DEVIATION * SURFACE_DEVIATION
+    roughness = SIDE_DEVIATION * SIDE_DEVIATION
     sigma = math.sqrt(offset_variance(landmark, along) + measurement.variance + roughness)
     narrow = sensor._replace(cone_sin=WELL_IN_VIEW * sensor.cone_sin)
     surely_in_view = in_field_of_view(narrow, predicted.x, predicted.y)

@@ -1,5 +1,5 @@
 /* Runs of connected models for a host that is not in this memory, such as the script of a page: whole runs in one
- * call, and a run that goes on exchange by exchange while somebody looks on and sets inputs.
+ * call, and a run that goes on exchange by exchange while a user watches and sets inputs.
  *
  * Numbers come in and go out as arrays of doubles. The file that is compiled has defined LIVE_MODELS, the tables of
  * the models, LIVE_COUNT, how many there are, LIVE_LINKS, their connections, made of the models' types as all others
@@ -15,7 +15,7 @@ typedef struct {
     Runner runner;
     Course course;
     int64_t seen_count;
-    Signal *seen; /* what is told of each exchange */
+    Signal *seen; /* what is reported of each exchange */
     Place *places;
     double *row; /* the end, its time [ns], what is kept */
     End end;

@@ -1,14 +1,16 @@
 """Writes an MCAP file whose rows of equal layout cost next to nothing, and that survives a kill.
 
 Chunks of at most a few MiB go to the operating system, into ``path``.part, which gets its name when complete.
-A thread compresses and writes each chunk while the next one fills. A block of messages of one channel and of one size
-is one array, message headers included; what is written once goes through the records of the ``mcap`` package.
+A thread makes the last messages of each chunk, compresses and writes it while the next one fills. A block of messages
+of one channel and of one size is one array, message headers included; what is written once goes through the records of
+the ``mcap`` package.
 Format: mcap.dev/spec.
 """
 
 import os
 import struct
 import zlib
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 
 from orchestrator.presentation.log.derived_files import clear
 from orchestrator.presentation.log.records import CHUNK, HEAD
+from orchestrator.presentation.log.sink import MessageSink
 
 CHUNK_SIZE = 1024 * 1024
 LIBRARY = "apa-cosim"
@@ -36,6 +39,54 @@ INDEX_HEADER = struct.Struct("<BQHI")
 INDEX_ENTRY = struct.Struct("<QQ")
 COMPRESSION = b"zstd"
 FOOTER_SIZE = 9 + 8 + 8 + 4
+
+
+class _Chunk:
+    """Messages that are compressed and written together."""
+
+    def __init__(self, counts: dict[int, int]) -> None:
+        self._counts = counts
+        """Channel -> how many messages it has in the file."""
+        self.parts: list[bytes | memoryview] = []
+        self.rest: list[Callable[[MessageSink], None]] = []
+        """What appends messages before it is written."""
+        self.size = 0
+        self.first_ns, self.last_ns = 1 << 62, 0
+        self.entries: dict[int, list[bytes]] = {}
+        """Channel -> times and offsets in the chunk of its messages."""
+
+    def write(self, channel: int, t_ns: int, data: bytes) -> None:
+        """Append one message at ``t_ns`` of simulated time."""
+        head = MESSAGE.pack(Opcode.MESSAGE, MESSAGE.size - 9 + len(data), channel, self._counts[channel], t_ns, t_ns)
+        self._note(channel, 1, INDEX_ENTRY.pack(t_ns, self.size), t_ns, t_ns)
+        self.add(head + data)
+
+    def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
+        """Append messages of equal size at the times ``t_ns``, one per row, behind ``HEADER_SIZE`` bytes for a header.
+
+        The rows must stay as they are until the chunk is written.
+        """
+        count, size = rows.shape
+        if not count:
+            return
+        header = rows[:, :HEADER_SIZE].view(MESSAGE_HEADER)[:, 0]
+        header["opcode"], header["length"], header["channel"] = Opcode.MESSAGE, size - 9, channel
+        header["sequence"] = self._counts[channel] + np.arange(count)
+        header["log"] = header["publish"] = t_ns
+        entries = np.empty((count, 2), dtype="<u8")
+        entries[:, 0], entries[:, 1] = t_ns, self.size + np.arange(count) * size
+        self._note(channel, count, entries.tobytes(), int(t_ns[0]), int(t_ns[-1]))
+        self.add(rows.data.cast("B"))
+
+    def add(self, record: bytes | memoryview) -> None:
+        """Append a record."""
+        self.parts.append(record)
+        self.size += len(record)
+
+    def _note(self, channel: int, count: int, entries: bytes, first_ns: int, last_ns: int) -> None:
+        self.entries.setdefault(channel, []).append(entries)
+        self._counts[channel] += count
+        self.first_ns, self.last_ns = min(self.first_ns, first_ns), max(self.last_ns, last_ns)
 
 
 class McapFile:
@@ -58,12 +109,11 @@ class McapFile:
         self._chunks: list[bytes] = []
         """The index records of the chunks, made where these are written."""
         self._metadata: list[MetadataIndex] = []
-        self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._written: Future[None] | None = None
         """Of the chunk that the thread of ``_writer`` writes."""
         self._compressor = zstandard.ZstdCompressor(level=-1, write_checksum=True)
-        self._begin_chunk()
+        self._chunk = _Chunk(self._counts)
         self._write(MCAP0_MAGIC + _bytes(Header(profile="", library=LIBRARY)))
 
     def add_channel(self, topic: str, message: type[Any]) -> int:
@@ -88,7 +138,7 @@ class McapFile:
     def _describe(self, record: Schema | Channel) -> None:
         described = _bytes(record)
         self._described += described
-        self._add(described)
+        self._chunk.add(described)
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Write a metadata record, outside the chunks, at once."""
@@ -99,33 +149,32 @@ class McapFile:
 
     def write(self, channel: int, t_ns: int, data: bytes) -> None:
         """Append one message at ``t_ns`` of simulated time."""
-        head = MESSAGE.pack(Opcode.MESSAGE, MESSAGE.size - 9 + len(data), channel, self._counts[channel], t_ns, t_ns)
-        self._note(channel, 1, INDEX_ENTRY.pack(t_ns, self._chunk_size), t_ns, t_ns)
-        self._add(head + data)
-        if self._chunk_size >= CHUNK_SIZE:
-            self._write_chunk()
+        self._chunk.write(channel, t_ns, data)
+        if self._chunk.size >= CHUNK_SIZE:
+            self.flush()
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
         """Append messages of equal size at the times ``t_ns``, one per row, behind ``HEADER_SIZE`` bytes for a header.
 
-        They stay in one chunk until ``flush``; after it the rows may be written over.
+        They stay in one chunk until ``flush``, and the rows must stay as they are.
         """
-        count, size = rows.shape
-        if not count:
-            return
-        header = rows[:, :HEADER_SIZE].view(MESSAGE_HEADER)[:, 0]
-        header["opcode"], header["length"], header["channel"] = Opcode.MESSAGE, size - 9, channel
-        header["sequence"] = self._counts[channel] + np.arange(count)
-        header["log"] = header["publish"] = t_ns
-        entries = np.empty((count, 2), dtype="<u8")
-        entries[:, 0], entries[:, 1] = t_ns, self._chunk_size + np.arange(count) * size
-        self._note(channel, count, entries.tobytes(), int(t_ns[0]), int(t_ns[-1]))
-        self._add(rows.data.cast("B"))
+        self._chunk.write_rows(channel, t_ns, rows)
+
+    def later(self, write: Callable[[MessageSink], None]) -> None:
+        """Let ``write`` append messages to the chunk in hand, in the thread that writes it."""
+        self._chunk.rest.append(write)
 
     def flush(self) -> None:
         """Hand the chunk in hand to the thread that writes, if it holds a message."""
-        if self._entries:
-            self._write_chunk()
+        if not self._chunk.entries and not self._chunk.rest:
+            return
+        chunk, self._chunk = self._chunk, _Chunk(self._counts)
+        self._await_chunk()
+        try:
+            self._written = self._writer.submit(self._compress_and_write, chunk)
+        except RuntimeError:  # no more threads here; the executor keeps what it could not start
+            self._writer = ThreadPoolExecutor(max_workers=1)
+            self._compress_and_write(chunk)
 
     def close(self) -> None:
         """Write the last chunk and the index, then rename. Safe to call twice."""
@@ -160,36 +209,6 @@ class McapFile:
         self._size += len(data)
         self._crc = zlib.crc32(data, self._crc)
 
-    def _add(self, record: bytes | memoryview) -> None:
-        self._parts.append(record)
-        self._chunk_size += len(record)
-
-    def _note(self, channel: int, count: int, entries: bytes, first_ns: int, last_ns: int) -> None:
-        self._entries.setdefault(channel, []).append(entries)
-        self._counts[channel] += count
-        self._chunk_first_ns, self._chunk_last_ns = (
-            min(self._chunk_first_ns, first_ns),
-            max(self._chunk_last_ns, last_ns),
-        )
-
-    def _begin_chunk(self) -> None:
-        self._parts: list[bytes | memoryview] = []
-        self._chunk_size = 0
-        self._chunk_first_ns = 1 << 62
-        self._chunk_last_ns = 0
-        self._entries: dict[int, list[bytes]] = {}
-        """Channel -> times and offsets in the chunk of its messages."""
-
-    def _write_chunk(self) -> None:
-        chunk = b"".join(self._parts), self._entries, self._chunk_first_ns, self._chunk_last_ns
-        self._begin_chunk()
-        self._await_chunk()
-        try:
-            self._written = self._writer.submit(self._compress_and_write, *chunk)
-        except RuntimeError:  # no more threads here; the executor keeps what it could not start
-            self._writer = ThreadPoolExecutor(max_workers=1)
-            self._compress_and_write(*chunk)
-
     def _await_chunk(self) -> None:
         """Wait until the chunk before is written. Raises the error that prevented it."""
         if self._written is not None:
@@ -198,8 +217,11 @@ class McapFile:
             if error is not None:
                 raise error
 
-    def _compress_and_write(self, data: bytes, entries: dict[int, list[bytes]], first: int, last: int) -> None:
-        """Write a chunk: its messages, their times and offsets by channel, the first and the last time [ns]."""
+    def _compress_and_write(self, chunk: _Chunk) -> None:
+        """Write a chunk."""
+        for write in chunk.rest:
+            write(chunk)
+        data, first, last = b"".join(chunk.parts), chunk.first_ns, chunk.last_ns
         packed = self._compressor.compress(data)
         body = CHUNK.pack(first, last, len(data), 0, len(COMPRESSION)) + COMPRESSION + len(packed).to_bytes(8, "little")
         length = HEAD.size + len(body) + len(packed)
@@ -216,7 +238,7 @@ class McapFile:
         )
         parts = [HEAD.pack(Opcode.CHUNK, length - HEAD.size), body, packed]
         at = self._size + length
-        for channel, items in entries.items():
+        for channel, items in chunk.entries.items():
             index.message_index_offsets[channel] = at
             times = b"".join(items)
             parts += [INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + len(times), channel, len(times)), times]

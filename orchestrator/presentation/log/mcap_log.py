@@ -77,7 +77,7 @@ class McapLog:
 
     def on_communication_point(self, t_ns: int) -> None:
         """Keep a row; a chunk's worth of them goes to the file at once."""
-        self.observe_rows(np.array([t_ns], dtype=np.int64), self._values[None, :])
+        self.observe_rows(np.array([t_ns], dtype=np.int64), self._values[None, :].copy())
 
     def observe_rows(self, t_ns: Times, rows: Array) -> None:
         """Take many rows; those that do not fill a chunk are kept."""
@@ -120,14 +120,15 @@ class McapLog:
     def _write_kept(self) -> None:
         if self._count:
             self._write_rows(self._times[: self._count], self._rows[: self._count])
-        self._count = 0
+            self._count = 0
+            self._rows, self._times = np.empty_like(self._rows), np.empty_like(self._times)
         self._file.flush()
 
     def _write_rows(self, t_ns: Times, rows: Array) -> None:
         changes = RowChanges(rows, self._latest)
         for pictures in self._pictures:
             pictures.write(t_ns, rows, changes)
-        self._signals.write(t_ns, rows, changes)
+        self._file.later(lambda to: self._signals.write(to, t_ns, rows, changes))
         self._latest = rows[-1].copy()
         self._file.flush()
 
@@ -185,7 +186,7 @@ class _Pictures:
             return
         times, drawn = t_ns[due], np.zeros((len(due), len(self._drawn)))
         drawn[:, self._known] = rows[due[:, None], self._known_columns]
-        self._file.write_rows(self._transforms, times, self._frames.rows(times, drawn))
+        self._file.later(lambda to: to.write_rows(self._transforms, times, self._frames.rows(times, drawn)))
         while self._changes and times[-1] >= self._changes[0]:
             self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
         in_trail = np.flatnonzero(times % TRAIL_STEP_NS < SCENE_PERIOD_NS)

@@ -12,7 +12,7 @@ from orchestrator.presentation.log.mcap_file import CHUNK_SIZE, HEADER_SIZE
 from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import VARIABLES
 from orchestrator.presentation.log.schema import PACKAGE, channel_places, descriptor_set, file_descriptor, name_prefix
-from orchestrator.presentation.log.sink import Sink
+from orchestrator.presentation.log.sink import MessageSink, Sink
 from orchestrator.simulation.cosim.compiled_master import EXCHANGES_PER_CALL
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, places_of
 from orchestrator.simulation.cosim.recording import to_json
@@ -59,21 +59,20 @@ class SignalChannel:
         notes = [note for _, note, _ in signals]
         self._channel = add_channel(file, topic, message_name(instance, place), variables, notes)
         self._encoder = Encoder(variables, self.columns.tolist(), HEADER_SIZE)
-        self._file = file
         self.is_on_change = bool(place)
         self._latest = b""
         """Its latest message, if it is written on change."""
         self.size = HEADER_SIZE + self._encoder.size
 
-    def write(self, times: Times, rows: Array) -> None:
-        """Hand a message for each of ``times`` to the file."""
+    def write(self, to: MessageSink, times: Times, rows: Array) -> None:
+        """Write a message for each of ``times``."""
         messages = self._encoder.rows(rows)
         self._latest = messages[-1, HEADER_SIZE:].tobytes()
-        self._file.write_rows(self._channel, times, messages)
+        to.write_rows(self._channel, times, messages)
 
-    def repeat(self, t_ns: int) -> None:
-        """Hand the latest message to the file once more."""
-        self._file.write(self._channel, t_ns, self._latest)
+    def repeat(self, to: MessageSink, t_ns: int) -> None:
+        """Write the latest message once more."""
+        to.write(self._channel, t_ns, self._latest)
 
 
 class SignalChannels:
@@ -94,19 +93,19 @@ class SignalChannels:
         for number, channel in enumerate(self._channels):
             self._channel_of_column[channel.columns] = number
 
-    def write(self, times: Times, rows: Array, changes: RowChanges) -> None:
-        """Hand the messages of rows to the file."""
+    def write(self, to: MessageSink, times: Times, rows: Array, changes: RowChanges) -> None:
+        """Write the messages of rows."""
         touched = set(self._channel_of_column[changes.columns].tolist())
         for number, channel in enumerate(self._channels):
             if not channel.is_on_change:
-                channel.write(times, rows)
+                channel.write(to, times, rows)
             elif number in touched:
                 chosen = changes.rows_of(channel.columns)
                 if self._is_repeated and chosen[0]:
                     chosen = np.append(0, chosen)
-                channel.write(times[chosen], rows[chosen])
+                channel.write(to, times[chosen], rows[chosen])
             elif self._is_repeated:
-                channel.repeat(int(times[0]))
+                channel.repeat(to, int(times[0]))
 
     def rows_per_chunk(self) -> int:
         """Return how many rows go into a chunk: few enough for one in which every value changes in each row.

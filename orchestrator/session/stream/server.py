@@ -5,6 +5,7 @@ What is sent once, or seldom, is sent again to whoever comes later. A viewer may
 """
 
 import secrets
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from fmus.installation import missing_package
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.presentation.log.mcap_file import HEADER_SIZE
+from orchestrator.presentation.log.sink import MessageSink
 from orchestrator.session.stream.gate import Gate, hidden_host
 from orchestrator.session.stream.tuning import Tuning
 
@@ -86,6 +88,10 @@ class LiveChannels:
         """Send messages of equal size, one per row, behind room for its header in a file."""
         for t, row in zip(t_ns.tolist(), rows[:, HEADER_SIZE:], strict=True):
             self.write(channel, t, row.tobytes())
+
+    def later(self, write: Callable[[MessageSink], None]) -> None:
+        """Send the messages that ``write`` writes."""
+        write(self)
 
     def flush(self) -> None:
         """Tell what parameters are now, if any was changed."""

@@ -179,8 +179,6 @@ def without_path(
     """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
     if memory.progress.manoeuvres > 0 and is_acceptable(memory, inputs.odometry, True, params):
         return memory._replace(plan=memory.plan._replace(is_final=True))
-    if memory.plan.is_optional:
-        return memory._replace(plan=memory.plan._replace(is_found=True))
     if memory.progress.direction != 0.0 and reason != Reason.LEFT_PATH:
         return memory._replace(plan=memory.plan._replace(failure=reason, failed_at=memory.perception.time))
     return memory._replace(reason=reason)

@@ -6,7 +6,7 @@ from controller_fmu.common.driver_selection import MAX_OFFERS, ChosenSide, Drive
 from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
-from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame
+from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame, pose_from_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
@@ -49,7 +49,14 @@ from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import find_row
-from controller_fmu.parking.slots.slot_filter import SlotFilter, count_absent, is_slot_corner, predict_slot, update_slot
+from controller_fmu.parking.slots.slot_filter import (
+    SlotFilter,
+    count_absent,
+    is_slot_corner,
+    predict_slot,
+    slot_frame,
+    update_slot,
+)
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress, with_landmarks
 from modelkit.car import car_length
 
@@ -81,6 +88,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
     if is_driving_state(memory.state):
         tracks = tuple(_track(memory, number, inputs, params) for number in range(MAX_SENSORS))
         slot_filter = _update_slot_filter(memory, inputs, params)
+        memory = _with_path_moved(memory, slot_filter)
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(search=with_slot_type(memory.search, params))
         memory = memory._replace(perception=memory.perception._replace(tracks=tracks))
@@ -106,7 +114,7 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
     driven = planar_distance(inputs.odometry.x, inputs.odometry.y, before.x, before.y)
     if not search.slot_filter.is_begun or driven <= 0.0:
         return search.slot_filter
-    slot_filter = predict_slot(search.slot_filter, inputs.odometry, driven, params.mapping)
+    slot_filter = predict_slot(search.slot_filter, before, inputs.odometry, params.mapping)
     readings = memory.perception.cycle.readings
     for number in range(MAX_SENSORS):
         found = measurement_of(number, readings[number], inputs.odometry, sensors, params.mapping.range_noise)
@@ -116,6 +124,21 @@ def _update_slot_filter(memory: ParkingMemory, inputs: ParkingSystemInput, param
         if found.status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO) and not is_silent_one:
             slot_filter = count_absent(slot_filter, search.slot, found)
     return slot_filter
+
+
+def _with_path_moved(memory: ParkingMemory, slot_filter: SlotFilter) -> ParkingMemory:
+    """Return the memory whose path and goal have moved with the slot, as ``slot_filter`` knows that now."""
+    search = memory.search
+    if not slot_filter.is_begun:
+        return memory
+    before = slot_frame(search.slot, search.slot_filter)
+    after = slot_frame(search.slot, slot_filter)
+    begin = pose_from_frame(pose_to_frame(memory.progress.begin, before), after)
+    goal = pose_from_frame(pose_to_frame(memory.plan.request.goal, before), after)
+    plan = memory.plan
+    return memory._replace(
+        progress=memory.progress._replace(begin=begin), plan=plan._replace(request=plan.request._replace(goal=goal))
+    )
 
 
 def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgress:
@@ -138,19 +161,11 @@ def _with_obstacles(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
         echo_obstacle(memory.perception.tracks[number], number, inputs, params) for number in range(MAX_SENSORS)
     )
     if any(is_yielded_to(track) for track in memory.perception.tracks):
-        memory = memory._replace(perception=memory.perception._replace(yields=yield_cycles(params)))
+        memory = memory._replace(
+            perception=memory.perception._replace(yields=math.floor(YIELD_TIME / params.car.ultrasonic.cycle))
+        )
     memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
     return _with_facing(memory, inputs, params)
-
-
-def yield_cycles(params: ParkingParams) -> int:
-    """Return for how many measurement cycles the vehicle stands for a moving object."""
-    return math.floor(YIELD_TIME / params.car.ultrasonic.cycle)
-
-
-def is_approached(echoes: tuple[EchoObstacle, ...]) -> bool:
-    """Return whether an object that the map does not hold approaches by itself."""
-    return any(echo.is_present and echo.is_unexplained and echo.closing_speed > MAX_REST for echo in echoes)
 
 
 def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:

@@ -60,8 +60,6 @@ class PlanProgress(NamedTuple):
     """Done for the request; 0: none is in hand."""
     plans: int = 0
     is_found: bool = False
-    is_optional: bool = False
-    """The path in hand is free and only misses the goal: it is kept unless there is a better one."""
     failure: int = Reason.NONE
     """No path leads on from where the vehicle was on its way: it waits for a change of the map."""
     failed_at: int = 0

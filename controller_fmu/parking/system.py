@@ -56,14 +56,12 @@ from controller_fmu.parking.path_planning import (
     with_way_out,
 )
 from controller_fmu.parking.perception import (
-    is_approached,
     is_driving_state,
     is_same_gap,
     number_of_choice,
     perceive,
     search_reason,
     search_slots,
-    yield_cycles,
 )
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.pull_out import is_clear_ahead
@@ -168,8 +166,6 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     verdict = monitor_collision(
         motion, outline, memory.perception.local_map.landmarks, memory.perception.echoes, params.monitor, params.mapping
     )
-    if verdict.is_blocked and not verdict.is_mapped and is_approached(memory.perception.echoes):
-        memory = memory._replace(perception=memory.perception._replace(yields=yield_cycles(params)))
     if memory.perception.yields > 0:
         verdict = verdict._replace(speed_limit=0.0, is_blocked=True, is_mapped=False)
     return memory._replace(verdict=verdict)
@@ -235,13 +231,12 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     is_obstructed = memory.verdict.free_distance < NO_LIMIT
     blocked_long = is_obstructed and seconds(memory.clocks.blocked) > patience
     halts = blocked or lost or is_out
-    is_displaced = standing and not halts and is_goal_displaced(memory, inputs.odometry, params)
     straightens = memory.state == ParkingState.STRAIGHTENING
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
         | bit(Condition.MUST_STOP, must_stop(progress, speeds, context) or halts)
-        | bit(Condition.REPLAN, standing and (lost or blocked_long or is_displaced))
+        | bit(Condition.REPLAN, standing and (lost or blocked_long))
         | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)
         | bit(Condition.IN_PLACE, in_place)
@@ -270,28 +265,12 @@ def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: Parki
         return True
     if memory.strategy == Strategy.SLOT and not is_accepted:
         return False
-    return is_at_goal(memory, inputs.odometry, inputs.odometry, params)
-
-
-def is_at_goal(memory: ParkingMemory, end: Pose, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether ``end`` is near enough to the goal as a vehicle at ``pose`` knows it now."""
     goal = memory.plan.request.goal
     if memory.strategy == Strategy.SLOT:
-        slot = slot_in_map(memory, pose, params)
+        slot = slot_in_map(memory, inputs.odometry, params)
         goal = goal_pose(slot, vehicle_outline(params.car, params.plan.curvature_fraction), params.slot)
     along = params.final.position + abs(params.drive.rolling_offset)
-    return is_near(end, goal, along, params.final.position, params.final.heading)
-
-
-def is_goal_displaced(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> bool:
-    """Return whether the rest of the path ends where a vehicle that drives it would have to plan again."""
-    has_rest = has_path(memory.state) and memory.progress.manoeuvres > 0 and not is_at_end(memory.progress)
-    return has_rest and not is_at_goal(memory, memory.plan.request.goal, pose, params)
-
-
-def has_path(state: int) -> bool:
-    """Return whether a vehicle in this state follows a path, or stands on it."""
-    return state in (ParkingState.STEERING, ParkingState.STOPPING)
+    return is_near(inputs.odometry, goal, along, params.final.position, params.final.heading)
 
 
 def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -312,14 +291,12 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
         remembered = memory.perception.remembered
         is_blocked = memory.verdict.is_blocked
-        is_optional = has_path(before) and not is_blocked and not is_lost(memory.progress, params)
         if is_blocked:
             remembered = remember_echoes(remembered, memory.perception.echoes)
         memory = memory._replace(
             perception=memory.perception._replace(remembered=remembered),
             clocks=memory.clocks._replace(blocked=0),
             verdict=MonitorVerdict(),
-            plan=memory.plan._replace(is_optional=is_optional),
         )
         memory = begin_plan(memory)
     if state == ParkingState.STEERING and before != ParkingState.STEERING:

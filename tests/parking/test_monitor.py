@@ -44,13 +44,11 @@ from controller_fmu.parking.obstacle_map import without_explained
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.perception import echo_obstacle, surface_near
-from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
-from controller_fmu.parking.system import enter_state, parking_sample
+from controller_fmu.parking.system import enter_state
 from modelkit.car import Car, SensorMount
 from modelkit.geometry import Point
-from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 
 OUTLINE = vehicle_outline(Car(), 1.0)
@@ -354,22 +352,6 @@ def test_a_remembered_echo_is_forgotten_once_the_map_explains_it() -> None:
     aside_wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, -1.0, 1))
     beside = ObstacleMap(aside_wall + (Vertex(),) * (LOCAL_VERTICES - 2))
     assert without_explained(echo, beside, aside, params) == echo, "the sensor does not see it"
-
-
-@pytest.mark.parametrize(("closing", "waits"), [(1.0, True), (0.0, False)])
-def test_the_vehicle_stands_for_some_time_once_it_has_stopped_for_who_approaches(closing: float, waits: bool) -> None:
-    """He walks on to where no sensor detects him: the vehicle does not set out as soon as the echo is gone."""
-    memory = ParkingMemory(state=ParkingState.DRIVING)
-    echo = EchoObstacle(FRONT + 0.4, 0.0, closing, True, True)
-    perception = memory.perception._replace(echoes=(echo, *NOTHING[1:]))
-    path = memory.progress.path
-    ahead = path.segments[0]._replace(distance=3.0)
-    progress = memory.progress._replace(path=path._replace(segments=(ahead, *path.segments[1:]), used=1), remaining=3.0)
-    inputs = ParkingSystemInput(apa_switch=True, measured_speed=0.5)
-    before = memory._replace(perception=perception, progress=progress)
-    after = parking_sample(new_store(PlanningWork), before, inputs, ParkingParams(), 10_000_000)
-    assert after.verdict.is_blocked
-    assert (after.perception.yields > 0) == waits
 
 
 def test_the_requested_speed_falls_gently_at_a_planned_stop_and_at_once_where_the_monitor_brakes() -> None:

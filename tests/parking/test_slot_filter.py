@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.following.path_tracking import PathProgress
+from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.sensor import (
@@ -16,7 +19,9 @@ from controller_fmu.parking.measurement.sensor import (
     sensor_pose,
 )
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.perception import with_slot_type
+from controller_fmu.parking.perception import perceive, with_slot_type
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.row import RowMember, SlotRow
 from controller_fmu.parking.slots.slot_filter import (
@@ -28,10 +33,11 @@ from controller_fmu.parking.slots.slot_filter import (
     count_absent,
     predict_echo,
     predict_slot,
+    slot_frame,
     slot_of_filter,
     update_slot,
 )
-from controller_fmu.parking.state import SearchProgress
+from controller_fmu.parking.state import ParkingMemory, PlanProgress, SearchProgress
 from modelkit.geometry import Box
 from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, exact_ranges
@@ -93,30 +99,50 @@ def test_behind_a_pillar_nothing_is_known_of_a_flank() -> None:
 def test_what_the_slot_is_unsure_follows_from_both_neighbours() -> None:
     """Half a vehicle deep its middle lies between flanks; all echoes share what 3 cm of mounting and surfaces err."""
     slot = slot_at()
-    drifted = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)
+    drifted = predict_slot(begin_slot_filter(slot), Pose(), Pose(6.0, 0.6, 0.2), PARAMS)
     known = slot_of_filter(slot, drifted, OUTLINE)
     turned = -0.5 * slot.row.side * OUTLINE.half_length
     for found, weights in (
-        (known.middle_sigma, [0.5, 0.0, turned, 0.5, 0.0, turned, 0.0]),
-        (known.front_sigma, [0.0, 0.5, 0.0, 0.0, 0.5, 0.0, 0.0]),
+        (known.middle_sigma, [0.5, 0.0, turned, 0.5, 0.0, turned, 0.0, 0.0]),
+        (known.front_sigma, [0.0, 0.5, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]),
     ):
         assert found == pytest.approx(math.sqrt(np.array(weights) @ matrix(drifted) @ weights + FRONT_SIGMA**2))
     assert known.row.heading_sigma > slot.row.heading_sigma
 
 
-def test_a_heading_that_was_unknown_does_not_turn_the_row() -> None:
-    """Of a neighbour only 0.3 m had been seen: once its flank was, the row turned by half of what that showed."""
-    slot = slot_at()
-    slot = slot._replace(ahead=slot.ahead._replace(end=WIDTH + 0.3))
+@pytest.mark.parametrize(("kind", "share"), [(SlotType.PARALLEL, 0.5), (SlotType.PERPENDICULAR, 0.25)])
+def test_the_vehicle_is_to_stand_between_the_road_and_its_neighbours(kind: SlotType, share: float) -> None:
+    slot = slot_at()._replace(type=kind)
     begun = begin_slot_filter(slot)
-    shown = begun._replace(state=(*begun.state[:5], math.radians(8.0), begun.state[6]))
-    turn = slot_of_filter(slot, shown, OUTLINE).row.frame.heading
-    assert 0.0 < math.degrees(turn) < 0.5
+    turned = begun._replace(state=(*begun.state[:2], 0.08, *begun.state[3:5], 0.04, *begun.state[6:]))
+    assert slot_of_filter(slot, turned, OUTLINE).row.frame.heading == pytest.approx(share * 0.06)
+    drifted = turned._replace(state=(*turned.state[:7], 0.06))
+    assert slot_of_filter(slot, drifted, OUTLINE).row.frame.heading == pytest.approx(0.06)
+
+
+def test_a_heading_that_was_unknown_does_not_turn_the_row() -> None:
+    """Of a neighbour only 0.3 m had been seen: what its flank shows says little of the odometry's drift."""
+    turns = []
+    for seen in (1.8, 0.3):
+        slot = slot_at()
+        slot = slot._replace(ahead=slot.ahead._replace(end=WIDTH + seen))
+        before = predict_slot(begin_slot_filter(slot), Pose(), Pose(6.0, 0.6, 0.2), PARAMS)
+        p, h = matrix(before), np.eye(STATE_COUNT)[5]
+        turns.append(float(p[7] @ h / (h @ p @ h)))
+    assert 0.0 < turns[1] < 0.5 * turns[0]
+
+
+def test_an_error_of_the_distance_turns_the_frame_only_in_a_bend() -> None:
+    begun = begin_slot_filter(slot_at())
+    straight, bend = (matrix(predict_slot(begun, Pose(), to, PARAMS)) for to in (Pose(2.0), Pose(2.0, 0.0, 0.5)))
+    assert straight[7, 7] == pytest.approx(PARAMS.heading_variance * 2.0)
+    way = 2.0 * math.cos(0.5)
+    assert bend[7, 7] == pytest.approx((PARAMS.heading_variance + PARAMS.distance_variance * (0.5 / way) ** 2) * way)
 
 
 def test_update_is_the_kalman_filter_of_the_textbook() -> None:
     slot = slot_at(0.1, -0.05, 0.02)
-    before = predict_slot(begin_slot_filter(slot), Pose(4.0, 2.0, 0.1), 6.0, PARAMS)
+    before = predict_slot(begin_slot_filter(slot), Pose(), Pose(6.0, 0.6, 0.2), PARAMS)
     sensor = sensor_pose(CAR.ultrasonic.mounts[9], CAR.ultrasonic.half_angle, Pose(1.4, -1.5, 1.5))
     echo = predict_echo(before, slot, sensor)
     h, p = np.array(echo.gradient), matrix(before)
@@ -161,8 +187,11 @@ def errors_after_drive(seed: int) -> tuple[float, float, float]:
         step, turn = -0.04, (0.5 * math.pi - true.heading) * 0.02
         true = Pose(true.x + step * math.cos(true.heading), true.y + step * math.sin(true.heading), true.heading + turn)
         way, heading = step * (1.0 + scale), believed.heading + turn + drift * step
-        believed = Pose(believed.x + way * math.cos(heading), believed.y + way * math.sin(heading), heading)
-        slot_filter = predict_slot(slot_filter, believed, -step, PARAMS)
+        before, believed = (
+            believed,
+            Pose(believed.x + way * math.cos(heading), believed.y + way * math.sin(heading), heading),
+        )
+        slot_filter = predict_slot(slot_filter, before, believed, PARAMS)
         for number, exact in enumerate(exact_ranges(true, BOXES, sensors)):
             measured = exact + 0.01 * rng.standard_normal()
             if reading_status(measured, sensors) == ReadingStatus.ECHO:
@@ -187,3 +216,31 @@ def test_a_slot_is_known_better_after_the_way_in() -> None:
     assert along < 0.03
     assert front < 0.06
     assert turn < 0.012
+
+
+def test_the_path_moves_with_the_slot() -> None:
+    """The slot was found 6 cm aside and turned by 0.6 deg: driving in, the path's end moves as the slot does."""
+    slot = slot_at(0.06, 0.0, 0.01)
+    params = ParkingParams(car=CAR)
+    sensors = CAR.ultrasonic
+    pose = Pose(1.5, 0.5, 0.5 * math.pi)
+    memory = ParkingMemory(
+        state=ParkingState.DRIVING,
+        search=SearchProgress(slot=slot, slot_filter=begin_slot_filter(slot)),
+        progress=PathProgress(begin=pose),
+        plan=PlanProgress(request=PlanningRequest(goal=Pose(1.56, -3.6, 0.5 * math.pi + 0.01))),
+    )
+    begun = memory
+    for _ in range(60):
+        pose = pose._replace(y=pose.y - 0.05)
+        readings = tuple(exact_ranges(pose, BOXES, sensors))
+        inputs = ParkingSystemInput(ultrasonic=readings, odometry=pose, measured_speed=-1.0)
+        memory = perceive(memory, inputs, params, round(sensors.cycle * 1e9))
+    before = slot_frame(slot, begun.search.slot_filter)
+    after = slot_frame(memory.search.slot, memory.search.slot_filter)
+    assert math.hypot(after.x - before.x, after.y - before.y) > 0.03
+    for moved, initial in (
+        (memory.progress.begin, begun.progress.begin),
+        (memory.plan.request.goal, begun.plan.request.goal),
+    ):
+        assert pose_to_frame(moved, after) == pytest.approx(pose_to_frame(initial, before), abs=1e-9)

@@ -121,6 +121,21 @@ def test_of_a_car_that_is_being_passed_the_corner_behind_is_known(side: float) -
     assert ends == [(True, False), (True, True)]
 
 
+def test_a_wall_across_the_road_shows_its_direction() -> None:
+    """Both cars stand turned by 4 deg, and as if in one line so turned; the wall is 12 m long."""
+    turn = math.radians(4.0)
+    cars = [Box(x, -2.25 + x * math.sin(turn), turn, 1.8, 4.5) for x in (-0.9, 3.9)]
+    wall = Box(0.0, 4.5, 0.0, 24.0, 0.4)
+    turns = []
+    for boxes in (cars, [*cars, wall]):
+        local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
+        for _, pose, readings in drive_past(boxes, Pose(-9.0, CAR.width / 2 + 1.0, 0.0), 14.0, 1, dropout=0.0):
+            local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
+        turns.append(math.degrees(find_row(local_map.landmarks, pose, -1.0, params).frame.heading))
+    assert turns[0] > 2.5
+    assert abs(turns[1]) < 0.5 * turns[0]
+
+
 def row_of(lengths: tuple[float, ...], complete: bool) -> SlotCandidate:
     members = tuple(RowMember(-8.0 * n, -8.0 * n + length, 1.0, complete, complete) for n, length in enumerate(lengths))
     row = SlotRow(members=members + (RowMember(),) * (8 - len(lengths)), used=len(lengths))

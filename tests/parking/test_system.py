@@ -11,21 +11,15 @@ from controller_fmu.common.chart import bit
 from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState
 from controller_fmu.parking.following.path_tracking import PathProgress
-from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.local_map import LandmarkMap
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES, MissedEchoes
 from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.path_planning import without_path
-from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
-from controller_fmu.parking.slots.goal import goal_pose
-from controller_fmu.parking.slots.row import RowMember, SlotRow
-from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
+from controller_fmu.parking.state import ParkingMemory, Perception
 from controller_fmu.parking.system import conditions_of, parking_sample
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -78,33 +72,13 @@ def test_it_gives_up_where_two_sensors_beside_each_other_are_silent(silent: set[
     assert after.reason == (Reason.SENSOR_LOSS if gives_up else Reason.NONE)
 
 
-@pytest.mark.parametrize(
-    ("displaced", "obstructed", "replans"), [(0.0, False, False), (0.1, False, True), (0.0, True, True)]
-)
-def test_after_a_wait_it_plans_again_only_where_the_path_is_obstructed_or_misses_the_goal(
-    displaced: float, obstructed: bool, replans: bool
-) -> None:
-    params = ParkingParams()
-    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    behind, ahead = RowMember(-1.8, 0.0), RowMember(3.0, 4.8)
-    slot = SlotCandidate(SlotType.PERPENDICULAR, row=SlotRow(Pose(), -1.0, used=2), behind=behind, ahead=ahead)
-    goal = goal_pose(slot, outline, params.slot)
-    planned = PlanningRequest(goal=goal._replace(x=goal.x + displaced))
+@pytest.mark.parametrize("obstructed", [False, True])
+def test_after_a_wait_it_plans_again_only_where_the_path_is_obstructed(obstructed: bool) -> None:
     memory = ParkingMemory(
         state=ParkingState.STOPPING,
-        search=SearchProgress(slot=slot),
-        plan=PlanProgress(request=planned),
         progress=PathProgress(remaining=1.0, manoeuvres=1),
         verdict=MonitorVerdict(free_distance=0.05, is_blocked=True, is_mapped=True) if obstructed else MonitorVerdict(),
         clocks=FaultClocks(blocked=2_000_000_000),
     )
-    conditions = conditions_of(memory, ParkingSystemInput(odometry=Pose(3.0, 2.0, 1.2)), params)
-    assert bool(conditions & bit(Condition.REPLAN, True)) == replans
-
-
-def test_a_path_that_only_misses_the_goal_is_kept_where_no_other_is_found() -> None:
-    params = ParkingParams()
-    under_way = ParkingMemory(plan=PlanProgress(is_optional=True), progress=PathProgress(direction=-1.0, manoeuvres=1))
-    kept = without_path(under_way, Reason.NO_PATH, ParkingSystemInput(), params)
-    assert kept.plan.is_found
-    assert kept.plan.failure == kept.reason == Reason.NONE
+    conditions = conditions_of(memory, ParkingSystemInput(odometry=Pose(3.0, 2.0, 1.2)), ParkingParams())
+    assert bool(conditions & bit(Condition.REPLAN, True)) == obstructed

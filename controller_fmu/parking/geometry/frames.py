@@ -31,3 +31,9 @@ def pose_to_frame(pose: Pose, frame: Pose) -> Pose:
     """Return ``pose`` relative to ``frame``; the heading [rad] is not wrapped."""
     point = point_to_frame(pose.x, pose.y, frame)
     return Pose(point.x, point.y, pose.heading - frame.heading)
+
+
+def pose_from_frame(pose: Pose, frame: Pose) -> Pose:
+    """Return a ``pose`` of the local ``frame`` in the odometry frame; the heading [rad] is not wrapped."""
+    point = point_from_frame(pose.x, pose.y, frame)
+    return Pose(point.x, point.y, pose.heading + frame.heading)

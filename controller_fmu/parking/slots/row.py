@@ -214,19 +214,20 @@ def with_member(row: SlotRow, at: int, member: RowMember) -> SlotRow:
 def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> RowDirection:
     """Return how far a row is turned against its frame: the road's direction.
 
-    It follows from the headings of all sides, those of cars and what lies deeper, and from the line through the row. A
-    line that contradicts the headings is none of the row: one of its cars has moved out of it. The sides of one car
-    share its misalignment. Half of the deviation is the slot's own: the vehicle stands between cars that make it.
+    It follows from the headings of all sides, those of cars, what lies deeper and what stands across the road, and from
+    the line through the row. A line that contradicts the headings is none of the row: one of its cars has moved out of
+    it. Half of the deviation is the slot's own: the vehicle stands between cars that make it.
     """
-    along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
     total = 0.0
     turn = 0.0
-    sides = tuple(side_as_member(landmarks[number], row.frame, row.side, params) for number in range(MAX_LANDMARKS))
-    for number in range(MAX_LANDMARKS):
-        if sides[number].end > sides[number].start:
-            weight = _side_weight(landmarks, sides, number)
-            total += weight
-            turn += weight * wrap_angle(landmarks[number].heading - along)
+    for side in (row.side, -row.side):
+        along = row.frame.heading if side < 0.0 else row.frame.heading + math.pi
+        sides = tuple(side_as_member(landmarks[number], row.frame, side, params) for number in range(MAX_LANDMARKS))
+        for number in range(MAX_LANDMARKS):
+            if sides[number].end > sides[number].start:
+                weight = _side_weight(landmarks, sides, number)
+                total += weight
+                turn += weight * wrap_angle(landmarks[number].heading - along)
     if total <= 0.0:
         return RowDirection(0.0, MAX_TILT)
     line = _line_direction(row)
@@ -239,7 +240,10 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
 
 
 def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], at: int) -> float:
-    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one."""
+    """Return the weight [1/rad2] of a landmark's heading in the mean of a row; all ``sides`` of a car weigh as one.
+
+    They share its misalignment. That of what is longer than cars, such as a wall, is how unevenly its ends may stand.
+    """
     side = sides[at]
     known = 0.0
     for number in range(MAX_LANDMARKS):
@@ -247,7 +251,9 @@ def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], 
         overlaps = other.end > side.start and side.end > other.start
         if other.end > other.start and overlaps and abs(other.front - side.front) < ROW_DEPTH:
             known += 1.0 / _heading_variance(landmarks[number], other)
-    return 1.0 / (_heading_variance(landmarks[at], side) * (1.0 + ASKEW_VARIANCE * known))
+    uneven = STAGGER_SIGMA / (side.end - side.start)
+    misaligned = min(ASKEW_VARIANCE, 2.0 * uneven * uneven)
+    return 1.0 / (_heading_variance(landmarks[at], side) * (1.0 + misaligned * known))
 
 
 def _heading_variance(landmark: Landmark, side: RowMember) -> float:

@@ -1,9 +1,10 @@
 """The slot while the vehicle drives into it: an extended Kalman filter of its neighbours and its end.
 
-State: each neighbour's corner at the mouth (x, y) and heading, and the end's distance along the direction into the
-slot, in the odometry frame. A neighbour is the two lines that meet at its corner, its front and its flank. The frame
-drifts as the vehicle moves, for all of them alike, so what is measured of one corrects the others too. An echo measures
-the range to the nearest of them, from a point p with the unit vector u towards it:
+State: each neighbour's corner at the mouth (x, y) and heading, the end's distance along the direction into the slot,
+and by how much the odometry frame has turned since; in that frame. A neighbour is the two lines that meet at its
+corner, its front and its flank. The frame drifts as the vehicle moves, for all of them alike, so what is measured of
+one corrects the others too. An echo measures the range to the nearest of them, from a point p with the unit vector u
+towards it:
 
     z = |p - s|    dz = u (dc + dh e_z x (p - c)) for a point of the neighbour (c, h),  dz = (u n) de for the end
 """
@@ -11,7 +12,7 @@ the range to the nearest of them, from a point p with the unit vector u towards 
 import math
 from typing import NamedTuple
 
-from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
+from controller_fmu.parking.geometry.frames import point_to_frame, pose_from_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.params import CAR_LENGTH, CAR_LENGTH_SIGMA, CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from controller_fmu.parking.measurement.predicted_range import (
@@ -28,10 +29,11 @@ from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
-STATE_COUNT = 7
-"""Corner x, y and heading of the neighbour behind, then of the one ahead, then the end."""
+STATE_COUNT = 8
+"""Corner x, y and heading of the neighbour behind, then of the one ahead, then the end and the frame's turn."""
 AHEAD_OFFSET = 3
 END_INDEX = 6
+TURN_INDEX = 7
 FRONT_SIGMA = 0.03
 """Standard deviation [m] of a front where a side ends, and of a body's surface from a straight line."""
 END_SIGMA = 0.05
@@ -80,15 +82,16 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
         b.y,
         _front_heading(slot.row, slot.ahead, slot.ahead.start_length),
         end.x * into_x + end.y * into_y,
+        0.0,
     )
     front = FRONT_SIGMA * FRONT_SIGMA
     cos = math.cos(slot.row.frame.heading)
     sin = math.sin(slot.row.frame.heading)
-    behind = (cos * slot.behind.end_sigma, sin * slot.behind.end_sigma, 0.0, 0.0, 0.0, 0.0, 0.0)
-    ahead = (0.0, 0.0, 0.0, cos * slot.ahead.start_sigma, sin * slot.ahead.start_sigma, 0.0, 0.0)
+    behind = (cos * slot.behind.end_sigma, sin * slot.behind.end_sigma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    ahead = (0.0, 0.0, 0.0, cos * slot.ahead.start_sigma, sin * slot.ahead.start_sigma, 0.0, 0.0, 0.0)
     behind_turn = _heading_variance(slot.behind, slot.behind.end_length)
     ahead_turn = _heading_variance(slot.ahead, slot.ahead.start_length)
-    diagonal = (front, front, behind_turn, front, front, ahead_turn, END_SIGMA * END_SIGMA)
+    diagonal = (front, front, behind_turn, front, front, ahead_turn, END_SIGMA * END_SIGMA, 0.0)
     covariance = tuple(
         behind[number // STATE_COUNT] * behind[number % STATE_COUNT]
         + ahead[number // STATE_COUNT] * ahead[number % STATE_COUNT]
@@ -123,16 +126,23 @@ def _front_variance(member: RowMember, side_length: float) -> float:
     return 2.0 * FRONT_SIGMA * FRONT_SIGMA / (length * length)
 
 
-def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params: MappingParams) -> SlotFilter:
-    """Return the filter after the vehicle, now at ``vehicle``, drove ``distance`` [m]: the odometry drifts."""
-    state = slot_filter.state
+def predict_slot(slot_filter: SlotFilter, before: Pose, vehicle: Pose, params: MappingParams) -> SlotFilter:
+    """Return the filter after the vehicle drove from ``before`` to ``vehicle``: the odometry drifts.
+
+    An error of the distance along an arc is one of the heading, too.
+    """
     ux = math.cos(vehicle.heading)
     uy = math.sin(vehicle.heading)
+    driven = (vehicle.x - before.x) * ux + (vehicle.y - before.y) * uy
+    if driven == 0.0:
+        return slot_filter
+    curvature = wrap_angle(vehicle.heading - before.heading) / driven
+    state = slot_filter.state
     nx = slot_filter.into_x
     ny = slot_filter.into_y
     middle_x = 0.5 * (state[0] + state[AHEAD_OFFSET])
     middle_y = 0.5 * (state[1] + state[AHEAD_OFFSET + 1])
-    along = (ux, uy, 0.0, ux, uy, 0.0, nx * ux + ny * uy)
+    ahead = (ux, uy, 0.0, ux, uy, 0.0, nx * ux + ny * uy, 0.0)
     turn = (
         vehicle.y - state[1],
         state[0] - vehicle.x,
@@ -141,9 +151,11 @@ def predict_slot(slot_filter: SlotFilter, vehicle: Pose, distance: float, params
         state[AHEAD_OFFSET] - vehicle.x,
         1.0,
         nx * (vehicle.y - middle_y) + ny * (middle_x - vehicle.x),
+        1.0,
     )
-    q_along = params.distance_variance * distance
-    q_turn = params.heading_variance * distance
+    along = tuple(ahead[number] + curvature * turn[number] for number in range(STATE_COUNT))
+    q_along = params.distance_variance * abs(driven)
+    q_turn = params.heading_variance * abs(driven)
     covariance = tuple(
         slot_filter.covariance[number]
         + q_along * along[number // STATE_COUNT] * along[number % STATE_COUNT]
@@ -258,10 +270,10 @@ def _nearer(before: SlotEcho, new: PredictedRange, sensor: SensorPose, slot_filt
     u = direction_of(new, sensor)
     if at == END_INDEX:
         into = u.x * slot_filter.into_x + u.y * slot_filter.into_y
-        return SlotEcho(new, (0.0,) * END_INDEX + (into,), new.origin == EchoOrigin.INTERIOR)
+        return SlotEcho(new, (0.0,) * END_INDEX + (into, 0.0), new.origin == EchoOrigin.INTERIOR)
     turn = u.y * (new.x - slot_filter.state[at]) - u.x * (new.y - slot_filter.state[at + 1])
     own = (u.x, u.y, turn)
-    gradient = own + (0.0, 0.0, 0.0, 0.0) if at == 0 else (0.0, 0.0, 0.0) + own + (0.0,)
+    gradient = own + (0.0, 0.0, 0.0, 0.0, 0.0) if at == 0 else (0.0, 0.0, 0.0) + own + (0.0, 0.0)
     return SlotEcho(new, gradient, new.origin in (EchoOrigin.INTERIOR, EchoOrigin.START))
 
 
@@ -278,21 +290,31 @@ def is_slot_corner(slot_filter: SlotFilter, point: Point) -> bool:
     return False
 
 
+def slot_frame(slot: SlotCandidate, slot_filter: SlotFilter) -> Pose:
+    """Return the middle of a slot's mouth, and the direction along its row that the vehicle is to stand by.
+
+    That turns with the odometry frame, and from the road's towards the neighbours' mean one, by a half. Across the road
+    bays may be marked, which follow the road: nobody knows, so half of that.
+    """
+    state = slot_filter.state
+    heading = slot.row.frame.heading
+    neighbours = 0.5 * (wrap_angle(state[2] - heading) + wrap_angle(state[AHEAD_OFFSET + 2] - heading))
+    share = 0.5 if slot.type == SlotType.PARALLEL else 0.25
+    turn = state[TURN_INDEX] + share * (neighbours - state[TURN_INDEX])
+    return Pose(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]), heading + turn)
+
+
 def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: VehicleOutline) -> SlotCandidate:
-    """Return the slot as the filter knows it, in a row turned by as much as its neighbours were.
+    """Return the slot as the filter knows it.
 
     Between neighbours that are misaligned a perpendicular slot lies where the vehicle's middle will be.
     """
     if not slot_filter.is_begun:
         return slot
     state = slot_filter.state
-    heading = slot.row.frame.heading
-    turn = _row_turn(slot, state)
-    middle = Point(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]))
-    before = point_to_frame(middle.x, middle.y, slot.row.frame)
-    rotated = Pose(middle.x, middle.y, heading + turn)
-    origin = point_from_frame(-before.x, -before.y, rotated)
-    frame = Pose(origin.x, origin.y, heading + turn)
+    middle = slot_frame(slot, slot_filter)
+    before = pose_to_frame(slot.row.frame, middle._replace(heading=slot.row.frame.heading))
+    frame = pose_from_frame(before, middle)
     a = point_to_frame(state[0], state[1], frame)
     b = point_to_frame(state[AHEAD_OFFSET], state[AHEAD_OFFSET + 1], frame)
     behind_front = slot.row.side * a.y
@@ -327,11 +349,9 @@ def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float
     along = Pose(half_cos, half_sin, -0.5 * deep)
     edge = Pose(2.0 * half_cos, 2.0 * half_sin, -deep)
     shared = FRONT_SIGMA * FRONT_SIGMA
-    share = _behind_share(slot)
-    turned = _sum_variance(covariance, Pose(0.0, 0.0, share), Pose(0.0, 0.0, 1.0 - share))
-    row_sigma = slot.row.heading_sigma
+    turned = covariance[TURN_INDEX * STATE_COUNT + TURN_INDEX] + slot.row.heading_sigma * slot.row.heading_sigma
     return slot._replace(
-        row=slot.row._replace(heading_sigma=math.sqrt(row_sigma * row_sigma + turned)),
+        row=slot.row._replace(heading_sigma=math.sqrt(turned)),
         behind=slot.behind._replace(end_sigma=math.sqrt(_sum_variance(covariance, edge, Pose()))),
         ahead=slot.ahead._replace(start_sigma=math.sqrt(_sum_variance(covariance, Pose(), edge))),
         front_sigma=math.sqrt(_sum_variance(covariance, across, across) + shared),
@@ -339,28 +359,9 @@ def _with_sigmas(slot: SlotCandidate, covariance: tuple[float, ...], deep: float
     )
 
 
-def _row_turn(slot: SlotCandidate, state: tuple[float, ...]) -> float:
-    """Return the mean angle [rad] by which a slot's neighbours are turned now, by how well each was known at first.
-
-    What a short side is found to be turned by was unknown before, rather than the odometry's drift.
-    """
-    a = slot.behind
-    b = slot.ahead
-    behind = wrap_angle(state[2] - _front_heading(slot.row, a, a.end_length))
-    ahead = wrap_angle(state[AHEAD_OFFSET + 2] - _front_heading(slot.row, b, b.start_length))
-    share = _behind_share(slot)
-    return share * behind + (1.0 - share) * ahead
-
-
-def _behind_share(slot: SlotCandidate) -> float:
-    """Return the weight of the neighbour behind in the mean of both headings."""
-    behind = 1.0 / _front_variance(slot.behind, slot.behind.end_length)
-    return behind / (behind + 1.0 / _front_variance(slot.ahead, slot.ahead.start_length))
-
-
 def _sum_variance(covariance: tuple[float, ...], behind: Pose, ahead: Pose) -> float:
     """Return the variance of a sum of both neighbours' states, with what each counts in it."""
-    weights = (behind.x, behind.y, behind.heading, ahead.x, ahead.y, ahead.heading, 0.0)
+    weights = (behind.x, behind.y, behind.heading, ahead.x, ahead.y, ahead.heading, 0.0, 0.0)
     total = 0.0
     for row in range(END_INDEX):
         total += weights[row] * _row_product(covariance, weights, row)

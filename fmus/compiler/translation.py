@@ -8,7 +8,7 @@ from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
-from fmus.compiler.slicing import Slice, SliceResult, fields_along, slice_program
+from fmus.compiler.slicing import Slice, SlicedLibrary, fields_along, slice_program, solve_liveness
 from fmus.compiler.source.diagnostics import AlreadySaidError, CannotError, Diagnostic, UnsupportedError
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.types import NoKindError, Struct, is_named_tuple, translating
@@ -37,7 +37,7 @@ def translate(model: Model, live: Slice | None = None) -> Translation:
 def live_inputs(model: Model, live: Slice) -> frozenset[str]:
     """Return the names of the inputs that the slice ``live`` of ``model`` reads; errors as :func:`translate`."""
     with _types_of(model):
-        fields = _slice(model, _interface(model), live).live_fields
+        fields = frozenset(solve_liveness(*_program(model, _interface(model), live)).fields)
         names = (item.name for item in variables(model.inputs))
         return frozenset(name for name in names if fields.issuperset(fields_along(model.inputs, name)))
 
@@ -48,9 +48,14 @@ def _types_of(model: Model) -> AbstractContextManager[None]:
     return translating(wholes, [cls for item in models for cls in _interface(item)])
 
 
-def _slice(model: Model, interfaces: list[Any], live: Slice) -> SliceResult:
+def _slice(model: Model, interfaces: list[Any], live: Slice) -> SlicedLibrary:
+    return slice_program(*_program(model, interfaces, live))
+
+
+def _program(model: Model, interfaces: list[Any], live: Slice) -> tuple[Library, list[Any], list[Any], Any, list[str]]:
+    """Return what a slice is made of."""
     found = select_systems(model, live.choices)
-    return slice_program(Library(), _roots(found), interfaces, model.outputs, sorted(live.outputs))
+    return Library(), _roots(found), interfaces, model.outputs, sorted(live.outputs)
 
 
 def _wholes(model: Model) -> dict[Any, Any]:
@@ -67,7 +72,7 @@ def _wholes(model: Model) -> dict[Any, Any]:
 def _translate(model: Model, interfaces: list[Any], live: Slice | None) -> Translation:
     library = None
     if live is not None:
-        model, library = select_systems(model, live.choices), _slice(model, interfaces, live).library
+        model, library = select_systems(model, live.choices), _slice(model, interfaces, live)
     parts = () if model.assembly is None else tuple(part.name for _, part in model.assembly.parts)
     program = Program((model.name, *parts), _roots(model), interfaces, NAMES, library)
     entries = Entries(program, model) if model.assembly is None else AssemblyEntries(program, model, model.assembly)

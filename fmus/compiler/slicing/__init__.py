@@ -8,6 +8,6 @@ zeros, so that types and the layout of the state stay as they are.
 """
 
 from fmus.compiler.slicing.code_kinds import fields_along
-from fmus.compiler.slicing.slices import DeadValue, Slice, SliceResult, slice_program
+from fmus.compiler.slicing.slices import DeadValue, Slice, SlicedLibrary, slice_program, solve_liveness
 
-__all__ = ["DeadValue", "Slice", "SliceResult", "fields_along", "slice_program"]
+__all__ = ["DeadValue", "Slice", "SlicedLibrary", "fields_along", "slice_program", "solve_liveness"]

@@ -3,6 +3,7 @@
 import ast
 import copy
 from collections.abc import Iterator
+from functools import cache
 from types import FunctionType
 from typing import Any
 
@@ -31,6 +32,7 @@ class Solver(CodeKinds):
         self.changed = True
         self.writers = Writers(library, self._bindings_of)
         self._bindings: dict[FunctionType, Bindings] = {}
+        self._has_open = cache(has_open)
 
     def _bindings_of(self, function: FunctionType) -> Bindings:
         if function not in self._bindings:
@@ -84,7 +86,7 @@ class Solver(CodeKinds):
     def is_live_parameter(self, function: FunctionType, name: str) -> bool:
         """Return whether a function reads its parameter; of one of unknown length it always does."""
         kind = self.function(function).kinds.get(name)
-        return kind is None or has_open(kind) or (function, name) in self.variables
+        return kind is None or self._has_open(kind) or (function, name) in self.variables
 
     # ---- the fixed point
 

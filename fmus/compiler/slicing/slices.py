@@ -10,7 +10,7 @@ from fmus.compiler.slicing.rewriting import DeadValue, Rewriter
 from fmus.compiler.source.discovery import CallGraph
 from fmus.compiler.source.reading import Library
 
-__all__ = ["DeadValue", "Slice", "SliceResult", "SlicedLibrary", "slice_program"]
+__all__ = ["DeadValue", "Slice", "SlicedLibrary", "slice_program", "solve_liveness"]
 
 
 class Slice(NamedTuple):
@@ -35,27 +35,25 @@ class SlicedLibrary(Library):
         return self._sliced.get(function) or super().function(function)
 
 
-class SliceResult(NamedTuple):
-    """A sliced program, and what of its interface it reads."""
-
-    library: SlicedLibrary
-    live_fields: frozenset[tuple[Any, str]]
-    """(NamedTuple class, field) read in live code."""
-
-
 def slice_program(
-    library: Library, roots: Iterable[FunctionType], types: Iterable[Any], outputs: Any, live: Iterable[str]
-) -> SliceResult:
-    """Return the slice of the program entered by ``roots`` whose outputs ``live`` are used.
+    library: Library, roots: list[FunctionType], types: Iterable[Any], outputs: Any, live: Iterable[str]
+) -> SlicedLibrary:
+    """Return what is left of the program entered by ``roots`` whose outputs ``live`` are used.
 
     ``outputs`` is the NamedTuple of the outputs, ``types`` are those of the model's interface.
     """
-    roots = list(roots)
+    solver = solve_liveness(library, roots, types, outputs, live)
+    return SlicedLibrary(library, {function: Rewriter(solver, function).rewritten() for function in solver.results})
+
+
+def solve_liveness(
+    library: Library, roots: list[FunctionType], types: Iterable[Any], outputs: Any, live: Iterable[str]
+) -> Solver:
+    """Return what is live in the program of :func:`slice_program`."""
     solver = Solver(library, CallGraph(library, roots, types))
     for name in live:
         solver.need_output(outputs, name)
     for root in roots:
         solver.need_result(root, {ALL_ITEMS})
     solver.solve()
-    sliced = {function: Rewriter(solver, function).rewritten() for function in solver.results}
-    return SliceResult(SlicedLibrary(library, sliced), frozenset(solver.fields))
+    return solver

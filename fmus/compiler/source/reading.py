@@ -5,6 +5,7 @@ import io
 import sys
 import tokenize
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from types import FunctionType
@@ -12,6 +13,8 @@ from typing import Any
 
 from fmus.compiler.source.diagnostics import CannotError
 
+KEPT_MODULES = 512
+"""Modules that are kept for the next translation: a study slices and translates each of its models several times."""
 NOTES = ("fmt:", "noqa", "type:", "ruff:", "pragma:", "mypy:")
 """Comments for tools, not for readers."""
 
@@ -104,10 +107,15 @@ def _has_source(name: str) -> bool:
 def read_module(name: str) -> Module:
     """Return module ``name`` read from its file."""
     path = Path(str(sys.modules[name].__file__))
-    text = path.read_text(encoding="utf-8")
-    is_package = path.name == "__init__.py"
+    return _parse(name, path.name, path.read_text(encoding="utf-8"))
+
+
+@lru_cache(maxsize=KEPT_MODULES)
+def _parse(name: str, base: str, text: str) -> Module:
+    """Return module ``name``, in a file called ``base``; nobody changes what is kept for the next translation."""
+    is_package = base == "__init__.py"
     file = "/".join(name.split(".")) + ("/__init__.py" if is_package else ".py")
-    found = Module(name, path.name if name == "__main__" else file, ast.parse(text), _comments(text))
+    found = Module(name, base if name == "__main__" else file, ast.parse(text), _comments(text))
     package = name if is_package else name.rpartition(".")[0]
     for node in ast.walk(found.tree):
         _note_imports(found, node, package)

@@ -1,6 +1,7 @@
 """``apa run``: one scenario, from YAML to log, figure, summary and exit code."""
 
 import argparse
+import sys
 from contextlib import nullcontext
 
 from orchestrator.presentation.drawing.picture_process import PictureBeside
@@ -43,9 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run, write, print. Returns 0 parked or finished, 1 not, 130 interrupted.
 
-    The picture's process is begun before anything else is imported, so that it is ready when the run is over.
+    The picture's process is begun before anything else is imported, so that it is ready when the run is over. Where
+    matplotlib has been imported, this process draws.
     """
-    with nullcontext() if arguments.no_page else PictureBeside() as beside:
+    with nullcontext() if arguments.no_page or "matplotlib" in sys.modules else PictureBeside() as beside:
         from orchestrator.commands.run.once import run_once
 
         return run_once(arguments, beside)

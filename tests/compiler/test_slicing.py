@@ -11,7 +11,8 @@ import tests.compiler.test_slicing as here
 from controller_fmu import MODEL as CONTROLLER
 from fmus.compiler import Translation, live_inputs, translate
 from fmus.compiler.slicing import Slice
-from fmus.native.compilers import FLAGS, find_compiler
+from fmus.native.compilers import FLAGS, LINUX_ALONE, find_compiler
+from fmus.native.platforms import host_target
 from fmus.native.sources import translate_model
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -148,6 +149,8 @@ def printed(code: Translation, folder: Path) -> list[list[str]]:
     folder.mkdir()
     for file, text in {"Sliced.h": code.header, "Sliced.c": code.source, "main.c": MAIN}.items():
         (folder / file).write_text(text)
-    find_compiler().run([*FLAGS, "-o", "main", "main.c", "Sliced.c", "-lm"], folder)
+    compiler = find_compiler()
+    alone = LINUX_ALONE if compiler.is_zig and "linux" in host_target().triple else ()
+    compiler.run([*FLAGS, "-o", "main", "main.c", "Sliced.c", "-lm", *alone], folder)
     text = subprocess.run([str(folder / "main")], capture_output=True, text=True, check=True).stdout
     return [line.split() for line in text.splitlines()]

@@ -112,12 +112,18 @@ def test_the_code_of_the_map_has_the_bits_of_the_complete_code(page: Any) -> Non
     assert all(is_equal for _, is_equal in found.values())
 
 
-def test_a_controller_of_one_system_has_no_code_for_a_map(apa_page: Any) -> None:
-    assert apa_page.evaluate(MAPPED, ["apa-parallel"]) == [[False, True]]
+def test_a_controller_of_one_system_has_no_code_for_a_map(tmp_path: Path, show: Any) -> None:
+    """Its map runs the complete code, as any page does without code for its map."""
+    assert map_code(scenarios_of("apa")) is None
+    path = tmp_path / "live.html"
+    path.write_text(live_page(scenarios_of()[:1], None), encoding="utf-8")
+    for page in watched(show, path, "guo2015-case4"):
+        assert page.evaluate(MAPPED, ["guo2015-case4"]) == [[False, True]]
 
 
 @pytest.mark.release  # compiles WebAssembly of another controller for a quarter of a minute
 def test_the_parking_system_has_a_page_of_its_own(apa_page: Any) -> None:
+    assert apa_page.evaluate(MAPPED, ["apa-parallel"]) == [[False, True]]
     apa_page.select_option("#scenario", "valet-perpendicular")
     apa_page.fill("#search", "scene.boxes[6].y")
     apa_page.click("#found button")

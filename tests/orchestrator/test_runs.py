@@ -93,8 +93,9 @@ def test_a_run_is_repeated_from_its_log_alone(tmp_path: Path, capsys: pytest.Cap
 
 def test_the_page_of_a_repeated_run_has_the_slot_layout_of_the_log(tmp_path: Path) -> None:
     layout = ["--set", "slot_layout.length=6.4", "--set", "stop_time=0.1"]
-    assert main(["run", "apa-parallel", *layout, "--fmus", "none", "--out", str(tmp_path / "run"), "-q"]) == 1
-    assert main(["rerun", str(tmp_path / "run"), "-q"]) == 1
+    short = ["--fmus", "none", "--no-page", "-q"]
+    assert main(["run", "apa-parallel", *layout, *short, "--out", str(tmp_path / "run")]) == 1
+    assert main(["rerun", str(tmp_path / "run"), "--no-page", "-q"]) == 1
     first, again = (
         layout_data(read_logged_scenario(read_log(tmp_path / name / "run.mcap"))) for name in ("run", "run-rerun")
     )

@@ -33,8 +33,6 @@ STAGGER = (-0.2, 0.3)
 """Neighbours stand further out than the car by this [m]."""
 MAX_MISALIGNMENT = math.radians(2.0)
 WALL_THICKNESS = 1.0
-PASSES = ("nobody", "stands", "walks off")
-PERSON_WIDTH = 0.5
 
 
 class PullOutCase(NamedTuple):
@@ -60,16 +58,14 @@ class PullOutCase(NamedTuple):
     out_a: float
     """How far the neighbour behind, or on the right, stands out further than the car [m]."""
     out_b: float
-    passes: str
-    """What a person does who is on the road beside the slot."""
 
 
-def cases(runs: int, lot: int = 0, people: bool = False) -> list[PullOutCase]:
-    """Return so many cases; ``people``: with a person on the road beside each slot."""
-    return [case_of(number, lot, people) for number in range(runs)]
+def cases(runs: int, lot: int = 0) -> list[PullOutCase]:
+    """Return so many cases."""
+    return [case_of(number, lot) for number in range(runs)]
 
 
-def case_of(number: int, lot: int, people: bool) -> PullOutCase:
+def case_of(number: int, lot: int) -> PullOutCase:
     """Return one case."""
     draw = random.Random(number + SEED_STRIDE * lot)
     kind = draw.choice(list(ROOM))
@@ -92,7 +88,6 @@ def case_of(number: int, lot: int, people: bool) -> PullOutCase:
         street=draw.choice(STREETS),
         out_a=draw.uniform(*STAGGER),
         out_b=draw.uniform(*STAGGER),
-        passes=draw.choice(PASSES[1:]) if people else PASSES[0],
     )
 
 
@@ -147,26 +142,11 @@ def vehicle_of(case: PullOutCase) -> dict[str, Any]:
         kerb = footprints["kerb"]
         line = {"x1": kerb.x0, "y1": case.side * kerb.y0, "x2": kerb.x1, "y2": case.side * kerb.y1, "height": 0.12}
         scene |= {f"scene.kerbs[1].{key}": value for key, value in line.items()}
-    scene |= {f"scene.boxes[5].{key}": value for key, value in _passer(case).items()}
     x, y, heading = start_of(case)
     place = {"start.x": x, "start.y": case.side * y, "start.heading": case.side * heading}
     seed = case.number + 1 + SEED_STRIDE * case.lot
     errors = imperfect(seed, random.Random(seed + 29)) | {"body": BODY[case.body]}
     return {**car_parameters(CARS[case.car]), **scene, **place, "driver.apa_switch_time": 0.5, **errors}
-
-
-def _passer(case: PullOutCase) -> dict[str, float]:
-    """Return a pedestrian on the road beside the slot, who stays for a while, or then walks off across the road."""
-    draw = random.Random(case.number + SEED_STRIDE * case.lot + 53)
-    if case.passes == PASSES[0]:
-        return {"length": 0.0}
-    far = case.extra + (car_length(CARS[case.car]) if case.kind == ParkingType.PARALLEL else CARS[case.car].width)
-    place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
-    person, leaves = {**place, "length": PERSON_WIDTH, "width": PERSON_WIDTH}, draw.uniform(3.0, 20.0)
-    if case.passes == PASSES[1]:
-        return {**person, "disappear_at": leaves}
-    speed = draw.uniform(0.8, 1.5)
-    return {**person, "speed_y": case.side * speed, "moves_at": leaves, "disappear_at": leaves + 6.0 / speed}
 
 
 def side_of(case: PullOutCase) -> int:

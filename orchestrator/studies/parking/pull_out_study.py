@@ -15,15 +15,7 @@ from orchestrator.inputs.scenario.requirements import library_requirements
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import console, result_table
 from orchestrator.studies.parking.cases import CARS, KINDS
-from orchestrator.studies.parking.pull_out_cases import (
-    PASSES,
-    PullOutCase,
-    case_labels,
-    case_of,
-    cases,
-    side_of,
-    vehicle_of,
-)
+from orchestrator.studies.parking.pull_out_cases import PullOutCase, case_labels, case_of, cases, side_of, vehicle_of
 from orchestrator.studies.parking.pull_out_feasibility import free_ahead, is_way_out
 from orchestrator.studies.parking.system_signals import APA_SYSTEM, PARKING_TIME
 from orchestrator.studies.sweep.fields import find_field
@@ -74,9 +66,9 @@ def scenario_of(case: PullOutCase) -> Scenario:
     )
 
 
-def study(runs: int = 400, lot: int = 0, people: bool = False) -> Study:
-    """Return so many runs; ``people``: with a person on the road beside each slot."""
-    chosen = cases(runs, lot, people)
+def study(runs: int = 400, lot: int = 0) -> Study:
+    """Return so many runs."""
+    chosen = cases(runs, lot)
     scenario, design = design_of(LabelledScenario(case_labels(case), scenario_of(case)) for case in chosen)
     side = np.array([[float(side_of(case))] for case in chosen])
     field = find_field("faults[2].value", scenario)
@@ -97,8 +89,7 @@ def outs(table: Table) -> list[OutRun]:
     found = []
     for row in range(len(columns["number"])):
         number, lot = int(columns["number"][row]), int(columns["lot"][row])
-        people = str(columns["passes"][row]) != PASSES[0]
-        case = case_of(number, lot, people)
+        case = case_of(number, lot)
         out = str(columns["outcome"][row]) == "finished"
         end = Pose(*(float(columns[f"final.{name}"][row]) for name in ("x", "y", "heading")))
         nearest, driven = (

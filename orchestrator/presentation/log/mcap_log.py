@@ -33,7 +33,7 @@ from orchestrator.presentation.log.protobuf_rows import Encoder
 from orchestrator.presentation.log.read_log import with_checksum
 from orchestrator.presentation.log.schema import PARAMETERS
 from orchestrator.presentation.log.signal_channels import RowChanges, SignalChannels, add_channel, message_name
-from orchestrator.presentation.log.sink import Sink
+from orchestrator.presentation.log.sink import MessageSink, Sink
 from orchestrator.simulation.cosim.algorithm import Termination
 from orchestrator.simulation.cosim.fmu_instance import Array, FmuInstance, Ports, all_values, places_of
 from orchestrator.simulation.cosim.signal_blocks import Times
@@ -186,14 +186,9 @@ class _Pictures:
             return
         times, drawn = t_ns[due], np.zeros((len(due), len(self._drawn)))
         drawn[:, self._known] = rows[due[:, None], self._known_columns]
-        self._file.later(lambda to: to.write_rows(self._transforms, times, self._frames.rows(times, drawn)))
+        self._file.later(lambda to: self._write_poses(to, times, drawn))
         while self._changes and times[-1] >= self._changes[0]:
             self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
-        in_trail = np.flatnonzero(times % TRAIL_STEP_NS < SCENE_PERIOD_NS)
-        for time, pose in zip(times[in_trail].tolist(), scene.trail_poses(drawn[in_trail, :3]), strict=True):
-            self._add_to_trail(pose)
-            if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
-                self._draw_trail(time)
         shown = due[times % PATH_PERIOD_NS < SCENE_PERIOD_NS]
         if not self._path_is_drawn and len(shown):
             self._draw_paths(t_ns[shown], rows.take(shown, axis=0))
@@ -205,8 +200,17 @@ class _Pictures:
         self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
 
     def on_terminate(self, t_ns: int) -> None:
-        if self._poses:
-            self._draw_trail(t_ns)
+        if self._last_period >= 0:
+            self._file.later(lambda to: self._draw_trail(to, t_ns))
+
+    def _write_poses(self, to: MessageSink, times: Times, drawn: Array) -> None:
+        """Write the frames at ``times``, and the trail where it is due. ``drawn``: see ``scene.Frames.rows``."""
+        to.write_rows(self._transforms, times, self._frames.rows(times, drawn))
+        in_trail = np.flatnonzero(times % TRAIL_STEP_NS < SCENE_PERIOD_NS)
+        for time, pose in zip(times[in_trail].tolist(), scene.trail_poses(drawn[in_trail, :3]), strict=True):
+            self._add_to_trail(pose)
+            if time % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
+                self._draw_trail(to, time)
 
     def _add_to_trail(self, pose: bytes) -> None:
         """Keep a pose; of a long run every second one, every fourth, and so on."""
@@ -217,9 +221,8 @@ class _Pictures:
             del self._poses[1::2]
             self._trail_stride *= 2
 
-    def _draw_trail(self, t_ns: int) -> None:
-        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
-        self._file.write(self._trail, t_ns, message)
+    def _draw_trail(self, to: MessageSink, t_ns: int) -> None:
+        to.write(self._trail, t_ns, scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)]))
 
     def _draw_paths(self, t_ns: Times, rows: Array) -> None:
         """Draw the planned path wherever it changes."""

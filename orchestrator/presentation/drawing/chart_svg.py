@@ -37,7 +37,7 @@ class _Box(NamedTuple):
         """Return the area in both."""
         wide = min(self.right, other.right) - max(self.left, other.left)
         high = min(self.bottom, other.bottom) - max(self.top, other.top)
-        return max(wide, 0.0) * max(high, 0.0)
+        return wide * high if wide > 0.0 and high > 0.0 else 0.0
 
 
 class _Label(NamedTuple):

@@ -7,6 +7,7 @@ The reader is ``template/data.js``.
 
 import base64
 import json
+import math
 import zlib
 from typing import Any
 
@@ -50,6 +51,6 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
-    if isinstance(value, float) and not np.isfinite(value):
+    if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -1,6 +1,7 @@
 """Which .fmu files a run uses, built when they are missing or older than their sources."""
 
 import hashlib
+import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
@@ -110,11 +111,13 @@ def sources_hash() -> str:
     """Return a hash over all files that an FMU is made from, as they were when this process first asked."""
     digest = hashlib.sha256()
     for room in SOURCES:
-        for path in sorted((ROOT / room).rglob("*")):
-            relative = path.relative_to(ROOT)
-            if path.is_file() and "dist" not in relative.parts and "__pycache__" not in relative.parts:
-                digest.update(str(relative).encode())
-                digest.update(path.read_bytes())
+        found: list[Path] = []
+        for folder, folders, names in os.walk(ROOT / room):
+            folders[:] = {*folders} - {"dist", "__pycache__"}
+            found += [Path(folder, name) for name in names]
+        for path in sorted(found):
+            digest.update(str(path.relative_to(ROOT)).encode())
+            digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

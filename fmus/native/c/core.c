@@ -152,19 +152,24 @@ static FmuStatus fmu_unknown(const FmuInstance *fmu, uint32_t reference, const c
                       (unsigned)reference, FMU_KIND_NAMES[fmu_places[reference].kind]);
 }
 
-/* Note what a call that is in order is about. Returns where its values are kept, or NULL if they are too many. */
-static const uint32_t *fmu_list(FmuList *list, const uint32_t references[], size_t count) {
-    size_t size = 0;
+/* Note what a call that is in order is about, numbers of `width` bytes. Returns where its values are kept, or NULL if
+ * they are too many. */
+static const FmuStretch *fmu_list(FmuList *list, const uint32_t references[], size_t count, size_t width) {
+    FmuStretch *next = list->stretches;
     list->count = list->size = 0;
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < fmu_elements(references[i]); k++) {
-            if (size == FMU_LISTED) return NULL;
+            const uint32_t offset = fmu_offset(references[i], k);
+            if (list->size++ == FMU_LISTED) return NULL;
             list->references[i] = references[i];
-            list->offsets[size++] = fmu_offset(references[i], k);
+            if (next > list->stretches && offset == next[-1].first + next[-1].count * width)
+                next[-1].count++;
+            else
+                *next++ = (FmuStretch){offset, 1};
         }
+    next->count = 0;
     list->count = count;
-    list->size = size;
-    return list->offsets;
+    return list->stretches;
 }
 
 /* Refuse a call that the FMU declares it cannot do, unless it asks for nothing. */

@@ -20,6 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define FMU_PASTE(a, b) a##b
 #define FMU_JOIN(a, b) FMU_PASTE(a, b)
@@ -27,15 +28,6 @@
 
 #ifndef FMU_STORE
 #define FMU_STORE(model)
-#endif
-
-/* Before a loop over the values of a call, of which a host makes many: four at a time. */
-#if defined(__clang__)
-#define FMU_FOUR_AT_A_TIME _Pragma("unroll 4")
-#elif defined(__GNUC__) && __GNUC__ >= 8
-#define FMU_FOUR_AT_A_TIME _Pragma("GCC unroll 4")
-#else
-#define FMU_FOUR_AT_A_TIME
 #endif
 
 typedef enum { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } FmuStatus; /* numbers of both standards */
@@ -59,6 +51,12 @@ typedef struct {
 /* REAL is kept as double, INTEGER and ENUMERATION as int64_t, BOOLEAN as bool. */
 typedef enum { FMU_REAL, FMU_INTEGER, FMU_ENUMERATION, FMU_BOOLEAN, FMU_KINDS } FmuKind;
 
+/* Numbers of one kind that are kept one behind the other; `first` is the offset of the first in FmuSaved. */
+typedef struct {
+    uint32_t first;
+    uint32_t count;
+} FmuStretch;
+
 /* What a call was found to be about: its value references, all of one kind, and where their values are kept. A host
  * makes the same calls at each step; then it is enough to see that they are the same. Of calls about more values than
  * the model has signals nothing is noted. */
@@ -66,7 +64,7 @@ typedef struct {
     size_t count; /* of references; 0: none yet */
     size_t size;  /* of values */
     uint32_t references[FMU_LISTED];
-    uint32_t offsets[FMU_LISTED]; /* in FmuSaved */
+    FmuStretch stretches[FMU_LISTED + 1]; /* behind the last: one without numbers */
 } FmuList;
 
 /* What the importer says about an instance: all that a message to it needs. */
@@ -133,14 +131,20 @@ static inline int32_t fmu_int32(int64_t value) {
 #define FMU_SAME(value) (value)
 
 /* Return where the values of these references are kept if they are the listed ones, else NULL. */
-static inline const uint32_t *fmu_listed(const FmuList *list, const uint32_t references[], size_t count) {
-    uint32_t differences = 0;
-    if (count != list->count) return NULL;
-    for (size_t i = 0; i < count; i++) differences |= references[i] ^ list->references[i];
-    return differences ? NULL : list->offsets;
+static inline const FmuStretch *fmu_listed(const FmuList *list, const uint32_t references[], size_t count) {
+    const bool same = count && count == list->count && !memcmp(references, list->references, count * sizeof *references);
+    return same ? list->stretches : NULL;
 }
 
 /* The number that is kept at an offset in FmuSaved. */
 #define FMU_KEPT(fmu, Kept, offset) (*(Kept *)(void *)((unsigned char *)&(fmu)->saved + (offset)))
+
+/* Do `move` for i below the length of each stretch, `kept` being its numbers and `values` those of the call. */
+#define FMU_EACH(fmu, Kept, stretches, values, move)                              \
+    for (const FmuStretch *stretch = stretches; stretch->count; stretch++) {      \
+        Kept *kept = &FMU_KEPT(fmu, Kept, stretch->first);                        \
+        for (size_t i = 0; i < stretch->count; i++) move;                         \
+        values += stretch->count;                                                 \
+    }
 
 #endif

@@ -86,55 +86,53 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 #define FMU_IS_BOOLEAN(reference) fmu_is(reference, FMU_BOOLEAN)
 #define FMU_TRUTH(value) ((value) != fmi2False)
 
-#define FMU_GET(Type, Kept, kind, is_known, convert)                                                                \
-    fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                  \
-                             fmi2##Type values[]) {                                                                 \
-        FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi2Get" #Type);                                                \
-        if (!fmu) return fmi2Error;                                                                                 \
-        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Get" #Type);                               \
-        fmu_refresh(fmu);                                                                                           \
-        const uint32_t *offsets = fmu_listed(&fmu->got[kind], references, count);                                   \
-        if (!offsets) {                                                                                             \
-            for (size_t i = 0; i < count; i++)                                                                      \
-                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Get" #Type);  \
-            offsets = fmu_list(&fmu->got[kind], references, count);                                                 \
-        }                                                                                                           \
-        if (offsets)                                                                                                \
-            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < count; i++)                                                   \
-                values[i] = convert(FMU_KEPT(fmu, Kept, offsets[i]));                                               \
-        else                                                                                                        \
-            for (size_t i = 0; i < count; i++)                                                                      \
-                values[i] = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)));                             \
-        return fmi2OK;                                                                                              \
+#define FMU_GET(Type, Kept, kind, is_known, convert)                                                               \
+    fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                 \
+                             fmi2##Type values[]) {                                                                \
+        FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi2Get" #Type);                                               \
+        if (!fmu) return fmi2Error;                                                                                \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Get" #Type);                              \
+        fmu_refresh(fmu);                                                                                          \
+        const FmuStretch *stretches = fmu_listed(&fmu->got[kind], references, count);                              \
+        if (!stretches) {                                                                                          \
+            for (size_t i = 0; i < count; i++)                                                                     \
+                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Get" #Type); \
+            stretches = fmu_list(&fmu->got[kind], references, count, sizeof(Kept));                                \
+        }                                                                                                          \
+        if (stretches)                                                                                             \
+            FMU_EACH(fmu, Kept, stretches, values, values[i] = convert(kept[i]))                                   \
+        else                                                                                                       \
+            for (size_t i = 0; i < count; i++)                                                                     \
+                values[i] = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)));                            \
+        return fmi2OK;                                                                                             \
     }
 
 /* All values to be set are checked before the first is taken: a refused call changes nothing. */
-#define FMU_SET(Type, Kept, kind, is_known, convert)                                                                \
-    fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                  \
-                             const fmi2##Type values[]) {                                                           \
-        FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi2Set" #Type);                               \
-        bool parameters = false;                                                                                    \
-        if (!fmu) return fmi2Error;                                                                                 \
-        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Set" #Type);                               \
-        const uint32_t *offsets = fmu_listed(&fmu->given[kind], references, count);                                 \
-        if (!offsets) {                                                                                             \
-            for (size_t i = 0; i < count; i++) {                                                                    \
-                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Set" #Type);  \
-                if (fmu_places[references[i]].role == FMU_INPUT) continue;                                          \
-                if (!fmu_is_settable(fmu, references[i], (double)convert(values[i]), "fmi2Set" #Type))              \
-                    return fmi2Error;                                                                               \
-                parameters = true;                                                                                  \
-            }                                                                                                       \
-            offsets = parameters ? NULL : fmu_list(&fmu->given[kind], references, count);                           \
-        }                                                                                                           \
-        if (offsets)                                                                                                \
-            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < count; i++)                                                   \
-                FMU_KEPT(fmu, Kept, offsets[i]) = convert(values[i]);                                               \
-        else                                                                                                        \
-            for (size_t i = 0; i < count; i++)                                                                      \
-                FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)) = convert(values[i]);                             \
-        if (parameters) fmu_parameters_changed(fmu);                                                                \
-        return fmi2OK;                                                                                              \
+#define FMU_SET(Type, Kept, kind, is_known, convert)                                                               \
+    fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                 \
+                             const fmi2##Type values[]) {                                                          \
+        FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi2Set" #Type);                              \
+        bool parameters = false;                                                                                   \
+        if (!fmu) return fmi2Error;                                                                                \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Set" #Type);                              \
+        const FmuStretch *stretches = fmu_listed(&fmu->given[kind], references, count);                            \
+        if (!stretches) {                                                                                          \
+            for (size_t i = 0; i < count; i++) {                                                                   \
+                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Set" #Type); \
+                if (fmu_places[references[i]].role == FMU_INPUT) continue;                                         \
+                if (!fmu_is_settable(fmu, references[i], (double)convert(values[i]), "fmi2Set" #Type))             \
+                    return fmi2Error;                                                                              \
+                parameters = true;                                                                                 \
+            }                                                                                                      \
+            stretches = parameters ? NULL : fmu_list(&fmu->given[kind], references, count, sizeof(Kept));          \
+        }                                                                                                          \
+        if (stretches)                                                                                             \
+            FMU_EACH(fmu, Kept, stretches, values, kept[i] = convert(values[i]))                                   \
+        else                                                                                                       \
+            for (size_t i = 0; i < count; i++)                                                                     \
+                FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)) = convert(values[i]);                            \
+        if (parameters) fmu_parameters_changed(fmu);                                                               \
+        return fmi2OK;                                                                                             \
     }
 
 FMU_GET(Real, double, FMU_REAL, FMU_IS_REAL, FMU_SAME)

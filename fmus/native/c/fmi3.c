@@ -114,59 +114,57 @@ static bool fmu_fits(FmuInstance *fmu, const fmi3ValueReference references[], si
     return false;
 }
 
-#define FMU_GET(Type, Kept, kind, convert)                                                                        \
-    fmi3Status fmi3Get##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,                 \
-                             fmi3##Type values[], size_t value_count) {                                           \
-        FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi3Get" #Type);                                              \
-        if (!fmu) return fmi3Error;                                                                               \
-        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Get" #Type);                             \
-        FmuList *list = &fmu->got[kind];                                                                          \
-        const uint32_t *offsets = fmu_listed(list, references, count);                                            \
-        if (!offsets || value_count != list->size) {                                                              \
-            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Get" #Type)) return fmi3Error;          \
-            offsets = fmu_list(list, references, count);                                                          \
-        }                                                                                                         \
-        fmu_refresh(fmu);                                                                                         \
-        if (offsets)                                                                                              \
-            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < value_count; i++)                                           \
-                values[i] = convert(FMU_KEPT(fmu, Kept, offsets[i]));                                             \
-        else                                                                                                      \
-            for (size_t i = 0; i < count; i++)                                                                    \
-                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                          \
-                    *values++ = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)));                       \
-        return fmi3OK;                                                                                            \
+#define FMU_GET(Type, Kept, kind, convert)                                                               \
+    fmi3Status fmi3Get##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,        \
+                             fmi3##Type values[], size_t value_count) {                                  \
+        FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi3Get" #Type);                                     \
+        if (!fmu) return fmi3Error;                                                                      \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Get" #Type);                    \
+        FmuList *list = &fmu->got[kind];                                                                 \
+        const FmuStretch *stretches = fmu_listed(list, references, count);                               \
+        if (!stretches || value_count != list->size) {                                                   \
+            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Get" #Type)) return fmi3Error; \
+            stretches = fmu_list(list, references, count, sizeof(Kept));                                 \
+        }                                                                                                \
+        fmu_refresh(fmu);                                                                                \
+        if (stretches)                                                                                   \
+            FMU_EACH(fmu, Kept, stretches, values, values[i] = convert(kept[i]))                         \
+        else                                                                                             \
+            for (size_t i = 0; i < count; i++)                                                           \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                 \
+                    *values++ = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)));              \
+        return fmi3OK;                                                                                   \
     }
 
 /* All values to be set are checked before the first is taken: a refused call changes nothing. */
-#define FMU_SET(Type, Kept, kind)                                                                                 \
-    fmi3Status fmi3Set##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,                 \
-                             const fmi3##Type values[], size_t value_count) {                                     \
-        FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi3Set" #Type);                             \
-        const fmi3##Type *value = values;                                                                         \
-        bool parameters = false;                                                                                  \
-        if (!fmu) return fmi3Error;                                                                               \
-        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Set" #Type);                             \
-        FmuList *list = &fmu->given[kind];                                                                        \
-        const uint32_t *offsets = fmu_listed(list, references, count);                                            \
-        if (!offsets || value_count != list->size) {                                                              \
-            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Set" #Type)) return fmi3Error;          \
-            for (size_t i = 0; i < count; i++)                                                                    \
-                for (size_t k = 0; k < fmu_elements(references[i]); k++, value++) {                               \
-                    if (fmu_places[references[i]].role == FMU_INPUT) continue;                                    \
-                    if (!fmu_is_settable(fmu, references[i], (double)*value, "fmi3Set" #Type)) return fmi3Error;  \
-                    parameters = true;                                                                            \
-                }                                                                                                 \
-            offsets = parameters ? NULL : fmu_list(list, references, count);                                      \
-        }                                                                                                         \
-        if (offsets)                                                                                              \
-            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < value_count; i++)                                           \
-                FMU_KEPT(fmu, Kept, offsets[i]) = values[i];                                                      \
-        else                                                                                                      \
-            for (size_t i = 0; i < count; i++)                                                                    \
-                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                          \
-                    FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)) = *values++;                                \
-        if (parameters) fmu_parameters_changed(fmu);                                                              \
-        return fmi3OK;                                                                                            \
+#define FMU_SET(Type, Kept, kind)                                                                                \
+    fmi3Status fmi3Set##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,                \
+                             const fmi3##Type values[], size_t value_count) {                                    \
+        FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi3Set" #Type);                            \
+        const fmi3##Type *value = values;                                                                        \
+        bool parameters = false;                                                                                 \
+        if (!fmu) return fmi3Error;                                                                              \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Set" #Type);                            \
+        FmuList *list = &fmu->given[kind];                                                                       \
+        const FmuStretch *stretches = fmu_listed(list, references, count);                                       \
+        if (!stretches || value_count != list->size) {                                                           \
+            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Set" #Type)) return fmi3Error;         \
+            for (size_t i = 0; i < count; i++)                                                                   \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++, value++) {                              \
+                    if (fmu_places[references[i]].role == FMU_INPUT) continue;                                   \
+                    if (!fmu_is_settable(fmu, references[i], (double)*value, "fmi3Set" #Type)) return fmi3Error; \
+                    parameters = true;                                                                           \
+                }                                                                                                \
+            stretches = parameters ? NULL : fmu_list(list, references, count, sizeof(Kept));                     \
+        }                                                                                                        \
+        if (stretches)                                                                                           \
+            FMU_EACH(fmu, Kept, stretches, values, kept[i] = values[i])                                          \
+        else                                                                                                     \
+            for (size_t i = 0; i < count; i++)                                                                   \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                         \
+                    FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)) = *values++;                               \
+        if (parameters) fmu_parameters_changed(fmu);                                                             \
+        return fmi3OK;                                                                                           \
     }
 
 FMU_GET(Float64, double, FMU_REAL, FMU_SAME)

@@ -109,6 +109,20 @@ def drive(make: Any, files: Any, after: Any = None) -> Any:
     return seen.times, error, log
 
 
+@pytest.mark.parametrize("stop_ns", [4_990_000_000, 6_500_000_000, 6_510_000_000])
+def test_a_run_that_nobody_watches_ends_with_the_same_values(fmus: Any, stop_ns: int) -> None:
+    ends = []
+    for make in (CoSimulation, CompiledMaster):
+        master = make(list(slaves(fmus["native"], print)), 10_000_000, stop_ns)
+        try:
+            master.initialize()
+            assert master.run() == ("stop_time", stop_ns)
+            ends.append(master.values.tobytes())
+        finally:
+            master.free()
+    assert ends[0] == ends[1]
+
+
 def break_vehicle(master: Any) -> None:
     """Bring the vehicle 1.5 s ahead of the master's clock."""
     master.instances[0].step(0, 1_500_000_000)

@@ -61,6 +61,7 @@ typedef struct {
     int64_t slave_count;
     int64_t link_count;
     int64_t width; /* of a row */
+    int64_t kept;  /* exchanges whose rows there is room for, two or more: exchange n has row n % kept */
     int64_t step_ns;
     int64_t stop_ns; /* time of the last exchange; the step to it may be shorter */
     int64_t last;    /* its number; nothing is stepped after it */
@@ -156,14 +157,14 @@ static int advance(Run *run, int64_t number, double *row) {
     return 1;
 }
 
-/* Do the exchanges numbered first, first + 1 ... at most `count` of them, two or more, stepping after each, and
- * return how many of `rows` are whole. Fewer than asked: `last` is reached, or a slave refused. `rows` must be the
- * same at every call. */
+/* Do the exchanges numbered first, first + 1 ... at most `count` of them, stepping after each, and
+ * return how many are whole. Fewer than asked: `last` is reached, or a slave refused. `rows` must be the same at every
+ * call. */
 FMI2_EXPORT int64_t master_run(Run *run, int64_t first, int64_t count, double *rows) {
     run->failure = NOTHING;
     for (int64_t done = 0; done < count; done++) {
         int64_t number = first + done;
-        double *row = rows + done * run->width;
+        double *row = rows + number % run->kept * run->width;
         if (!exchange(run, number, row)) return done;
         if (number == run->last || !advance(run, number, row)) return done + 1;
     }

@@ -69,6 +69,7 @@ RunC = structure(
     instance_count=Long,
     link_count=Long,
     width=Long,
+    kept=Long,
     step_ns=Long,
     stop_ns=Long,
     last=Long,
@@ -105,10 +106,13 @@ class CompiledMaster(CoSimulation):
         first = 0
         endings = [self._ending_of_block(ending) for ending in self.endings]
         observers = [self._observer_of_block(observer) for observer in self.observers]
+        is_seen = bool(observers or endings)
+        kept = plan.keep_rows(EXCHANGES_PER_CALL if is_seen else 2)
         while True:
             count = plan.advance(first)
-            unseen = 0 if observers or endings else max(count - 1, 0)
-            rows = plan.rows_of_ports(unseen, count)
+            unseen = 0 if is_seen else max(count - 1, 0)
+            begin = (first + unseen) % kept
+            rows = plan.rows_of_ports(begin, begin + count - unseen)
             times = np.minimum(np.arange(first + unseen, first + count, dtype=np.int64) * self.step_ns, self.stop_ns)
             if len(times):
                 seen, reason = self._end_in_block(endings, times, rows, first + count - 1 == plan.last)
@@ -185,15 +189,20 @@ class _Plan:
         links = (LinkC * len(parts))(*[self._link(link, number) for link, number in parts])
         self._kept += [before, links]
         pointers = (ctypes.addressof(self._instances), ctypes.addressof(links), before.ctypes.data)
-        self._run = RunC(*pointers, len(fmus), len(links), len(before), master.step_ns, master.stop_ns, self.last)
+        self._run = RunC(*pointers, len(fmus), len(links), len(before), 2, master.step_ns, master.stop_ns, self.last)
         self._addresses = ctypes.addressof(self._run), self.rows.ctypes.data
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
         """Return the rows with their values in the order of the master's."""
         return self.rows[begin:end].take(self._columns, axis=1)
 
+    def keep_rows(self, count: int) -> int:
+        """Keep the rows of the last ``count`` exchanges, two or more; return that."""
+        self._run.kept = count
+        return count
+
     def advance(self, first: int) -> int:
-        """Do a block of exchanges; return how many are in ``rows``."""
+        """Do a block of exchanges; return how many are complete."""
         run, rows = self._addresses
         return int(self._call(run, first, EXCHANGES_PER_CALL, rows))
 

@@ -105,10 +105,12 @@ static int64_t time_of(const Course *course) {
     return regular < course->stop_ns ? regular : course->stop_ns;
 }
 
-/* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
-static void note(const Runner *runner, const Course *course, double *kept) {
+/* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. `all`: also those that are read
+ * once a run is over. */
+static void note(const Runner *runner, const Course *course, double *kept, int all) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
         const Kept *wanted = &runner->batch->kept[k];
+        if (!all && is_at_end(wanted)) continue;
         if (wanted->values && !is_in(look(runner->when[k]), wanted->values)) continue;
         const double now = look(runner->kept[k]);
         const int nan = isnan(now) != 0;
@@ -189,10 +191,11 @@ static int run(const Runner *runner, const double *params, const double *faults,
     End end = STOP_TIME;
     if (initialize(runner, params, faults, course.step_ns)) return -1;
     begin_notes(runner, row + 2);
-    for (;; advance(runner, &course)) {
+    for (int over = 0; !over;) {
         exchange(runner, &course);
-        note(runner, &course, row + 2);
-        if (is_over(runner, &course, &end)) break;
+        over = is_over(runner, &course, &end);
+        note(runner, &course, row + 2, over);
+        if (!over) advance(runner, &course);
     }
     row[0] = (double)end;
     row[1] = (double)time_of(&course);
@@ -377,7 +380,7 @@ static Progress look_at(const Access *access, Episode *episode, double *row) {
     End end;
     int over;
     exchange(runner, &episode->course);
-    note(runner, &episode->course, row + 2);
+    note(runner, &episode->course, row + 2, 1);
     over = is_over(runner, &episode->course, &end);
     progress = is_in(look(episode->broken), access->values) ? BROKEN_OFF
                : !over                                      ? GOES_ON

@@ -43,6 +43,9 @@ typedef struct {
 
 typedef enum { STOP_TIME, STANDSTILL } End;
 
+/* Whether it is read once a run is over, and not noted before. */
+static int is_at_end(const Kept *kept) { return kept->how == LAST && !kept->values; }
+
 #ifndef BATCH_ALIGNMENT /* of what is laid out in memory [bytes] */
 #define BATCH_ALIGNMENT sizeof(double)
 #endif

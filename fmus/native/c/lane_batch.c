@@ -153,9 +153,6 @@ static lane_i time_of(const Courses *courses) {
     return lane_int_min(courses->count * courses->step_ns, courses->stop_ns);
 }
 
-/* Whether it is read once a run is over, and not noted before. */
-static int is_at_end(const Kept *kept) { return kept->how == LAST && !kept->values; }
-
 /* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
 static void note(const Runner *runner) {
     const Courses *courses = &runner->courses;

@@ -137,7 +137,7 @@ LIBRARY_EXPORT int32_t live_begin(Live *live, const double *params, const double
 /* One exchange; fills what is seen. Returns whether the run is over. */
 LIBRARY_EXPORT int32_t live_exchange(Live *live, double *seen) {
     exchange(&live->runner, &live->course);
-    note(&live->runner, &live->course, live->row + 2);
+    note(&live->runner, &live->course, live->row + 2, 1);
     for (int64_t k = 0; k < live->seen_count; k++) seen[k] = look(live->places[k]);
     const int over = is_over(&live->runner, &live->course, &live->end);
     live->row[0] = (double)live->end;

@@ -54,15 +54,22 @@ static int64_t shift_right(int64_t a, int64_t n)
 }
 """,
     "index_in": """\
+#if defined(__GNUC__)
+#define LIKELY(condition) __builtin_expect(condition, 1)
+#else
+#define LIKELY(condition) (condition)
+#endif
+
 /* Index of an item of n, from the end if negative. Where Python raises (no such item): the nearest one. */
 static int64_t index_in(int64_t index, int64_t n)
 {
-    const int64_t place = index < 0 ? index + n : index;
-
-    if (place < 0) {
-        return 0;
+    if (LIKELY((uint64_t)index < (uint64_t)n)) {
+        return index;
     }
-    return place < n ? place : n - 1;
+    if (index < 0) {
+        return index + n < 0 ? 0 : index + n;
+    }
+    return n - 1;
 }
 """,
     "int_within": """\

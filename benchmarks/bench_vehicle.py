@@ -32,7 +32,7 @@ from orchestrator.simulation.cosim.fmu_files import fmu_files
 from vehicle_fmu import MODEL
 from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.bodies.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
-from vehicle_fmu.bodies.kinematic import KinematicInput, move
+from vehicle_fmu.bodies.kinematic import KinematicInput, KinematicState, move
 from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState, step_single_track
 from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
@@ -46,11 +46,11 @@ Rounds = dict[str, tuple[int, Callable[[int], Any]]]
 """Name -> how many steps a round has, and the round."""
 
 
-def kinematic(n: int, pose: Any) -> Any:
-    """Return the pose after ``n`` steps of 1 ms."""
+def kinematic(n: int, state: Any) -> Any:
+    """Return the car without tyre slip after ``n`` steps of 1 ms."""
     for _ in range(n):
-        pose = move(pose, HELD, HELD, WHEELBASE, 0.001)
-    return pose
+        state = move(state, HELD, HELD, WHEELBASE, 0.001)
+    return state
 
 
 def single(n: int, state: Any, effort: Any, build: Any, p: Any) -> Any:
@@ -72,7 +72,7 @@ def bodies(n: int) -> Rounds:
     build, push = Build(Stance(WHEELBASE, 1.40), ChassisParams(), RoadParams()), Effort(200.0, 0.0)
     one, two = SingleTrackState(MOVING), DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
     return {
-        "kinematic": (n, lambda n: kinematic(n, Pose())),
+        "kinematic": (n, lambda n: kinematic(n, KinematicState())),
         "single_track": (n, lambda n: single(n, one, push, build, SingleTrackParams())),
         "double_track": (n, lambda n: double(n, two, push, build, DoubleTrackParams())),
     }

@@ -39,7 +39,7 @@ def test_bodies(bench: Any) -> None:
     library = module.compiled()
     for name, (_, run) in module.bodies(0).items():
         end = run(40)
-        pose = end if name == "kinematic" else end.motion.pose
+        pose = (end if name == "kinematic" else end.motion).pose
         assert module.compiled_bodies(library, 40)[name][1](40) == pose.x != 0.0
     assert len({run(100) for _, run in module.vehicles(library, 0).values()}) == 3
 

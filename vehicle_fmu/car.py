@@ -5,7 +5,7 @@ from typing import NamedTuple
 from modelkit.maths import clamp
 from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.bodies.body import BodyState, motion_of, place, push_body, wheel_speed
-from vehicle_fmu.bodies.kinematic import KinematicInput, move
+from vehicle_fmu.bodies.kinematic import KinematicInput, KinematicState, move, resting_at
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, target_speed, watch
 from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, attainable_speed, obey, press, shift, target_gear
@@ -40,6 +40,7 @@ class CarState(NamedTuple):
     request_line: tuple[float, ...] = (0.0,) * DELAY_CELLS
     """Requests [rad] of the steering's dead time, oldest first; without one, they are not kept."""
     pedals: Pedals = Pedals()
+    kinematic: KinematicState = KinematicState()
     body: BodyState = BodyState()
     odometry: OdometryState = OdometryState()
 
@@ -50,6 +51,7 @@ def initial_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
     return CarState(
         pose=start,
         pedals=Pedals(effort=holding),
+        kinematic=resting_at(start),
         body=place(start, params.body if usable else Body.KINEMATIC, params),
         odometry=OdometryState(start),
     )
@@ -156,8 +158,8 @@ def _tread(
 def _roll(state: CarState, speed: float, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
     """Return the car ``h`` [s] later, of the body without tyres, whose ``speed`` [m/s] is known."""
     now = KinematicInput(state.speed, angles[0])
-    pose = move(state.pose, now, KinematicInput(speed, angles[1]), params.car.wheelbase, h)
-    return state._replace(pose=pose, speed=speed, rolled_speed=speed)
+    moved = move(state.kinematic, now, KinematicInput(speed, angles[1]), params.car.wheelbase, h)
+    return state._replace(kinematic=moved, pose=moved.pose, speed=speed, rolled_speed=speed)
 
 
 def _push(state: CarState, pedals: Pedals, params: VehicleParams, h: float) -> CarState:

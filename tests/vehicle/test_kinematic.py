@@ -11,7 +11,7 @@ from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 from modelkit.car import CarSteering
 from modelkit.vocabulary import Pose
 from tests.vehicle.cars import CARS
-from vehicle_fmu.bodies.kinematic import KinematicInput, move
+from vehicle_fmu.bodies.kinematic import KinematicInput, move, resting_at
 from vehicle_fmu.drive import change_speed
 from vehicle_fmu.interface import DriveParams
 from vehicle_fmu.steering import turn_steering_wheel
@@ -20,7 +20,7 @@ from vehicle_fmu.steering import turn_steering_wheel
 @given(st.sampled_from(CARS), st.floats(-13.0, 40.0), st.floats(-0.9, 0.9), st.floats(-4.0, 4.0))
 def test_rates_equal_ks(car: Any, speed: float, angle: float, heading: float) -> None:
     held, h = KinematicInput(speed, angle), 1e-7
-    ours = move(Pose(0.0, 0.0, heading), held, held, car.a + car.b, h)
+    ours = move(resting_at(Pose(0.0, 0.0, heading)), held, held, car.a + car.b, h).pose
     halfway = 0.5 * (heading + ours.heading)
     theirs = vehicle_dynamics_ks([1.0, 2.0, angle, speed, halfway], [0.0, 0.0], car)
     assert ours.x / h == pytest.approx(theirs[0], abs=1e-10)
@@ -51,7 +51,7 @@ def test_acceleration_is_limited_as_in_ks_below_its_switching_speed(car: Any) ->
 
 @given(st.floats(-2.0, 2.0), st.floats(-0.6, 0.6), st.floats(0.001, 0.1))
 def test_a_held_wheel_drives_an_exact_circle(speed: float, angle: float, h: float) -> None:
-    pose = move(Pose(), KinematicInput(speed, angle), KinematicInput(speed, angle), 2.4, h)
+    pose = move(resting_at(Pose()), KinematicInput(speed, angle), KinematicInput(speed, angle), 2.4, h).pose
     turn = speed * h * math.tan(angle) / 2.4
     x, y = speed * h, 0.0
     if abs(turn) > 1e-9:

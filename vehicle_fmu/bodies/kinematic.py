@@ -20,8 +20,24 @@ class KinematicInput(NamedTuple):
     """phi, of the front wheels [rad]."""
 
 
-def move(pose: Pose, now: KinematicInput, then: KinematicInput, wheelbase: float, h: float) -> Pose:
-    """Return the pose ``h`` [s] later, speed and front-wheel angle going linearly from those ``now`` to those ``then``.
+class KinematicState(NamedTuple):
+    """Where the car is, with the direction that the next step begins with."""
+
+    pose: Pose = Pose()
+    cos: float = 1.0
+    """Of the heading, as ``sin``."""
+    sin: float = 0.0
+
+
+def resting_at(pose: Pose) -> KinematicState:
+    """Return the car at rest at ``pose``, wheel straight."""
+    return KinematicState(pose, math.cos(pose.heading), math.sin(pose.heading))
+
+
+def move(
+    state: KinematicState, now: KinematicInput, then: KinematicInput, wheelbase: float, h: float
+) -> KinematicState:
+    """Return the car ``h`` [s] later, speed and front-wheel angle going linearly from those ``now`` to those ``then``.
 
     Both are known functions of time, so heading, then position, are integrals: Simpson's rule,
     with the heading halfway from the parabola through the three rates. Fourth order in ``h``.
@@ -29,7 +45,9 @@ def move(pose: Pose, now: KinematicInput, then: KinematicInput, wheelbase: float
     speed = now.speed
     next_speed = then.speed
     if speed == 0.0 and next_speed == 0.0:
-        return pose
+        return state
+    pose = state.pose
+    heading = pose.heading
     tan = math.tan(now.angle)
     middle_tan = tan
     next_tan = tan
@@ -40,13 +58,11 @@ def move(pose: Pose, now: KinematicInput, then: KinematicInput, wheelbase: float
     rate = speed * tan / wheelbase
     middle_rate = middle_speed * middle_tan / wheelbase
     next_rate = next_speed * next_tan / wheelbase
-    heading = pose.heading
     middle_heading = heading + h * (5.0 * rate + 8.0 * middle_rate - next_rate) / 24.0
     next_heading = heading + h * (rate + 4.0 * middle_rate + next_rate) / 6.0
-    x_rate = speed * math.cos(heading) + 4.0 * middle_speed * math.cos(middle_heading)
-    y_rate = speed * math.sin(heading) + 4.0 * middle_speed * math.sin(middle_heading)
-    return Pose(
-        pose.x + h * (x_rate + next_speed * math.cos(next_heading)) / 6.0,
-        pose.y + h * (y_rate + next_speed * math.sin(next_heading)) / 6.0,
-        next_heading,
-    )
+    next_cos = math.cos(next_heading)
+    next_sin = math.sin(next_heading)
+    x_rate = speed * state.cos + 4.0 * middle_speed * math.cos(middle_heading) + next_speed * next_cos
+    y_rate = speed * state.sin + 4.0 * middle_speed * math.sin(middle_heading) + next_speed * next_sin
+    moved = Pose(pose.x + h * x_rate / 6.0, pose.y + h * y_rate / 6.0, next_heading)
+    return KinematicState(moved, next_cos, next_sin)

@@ -20,6 +20,8 @@ from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.session import run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.studies.sweep.batch import run_batch, run_recorded
+from orchestrator.studies.sweep.engine import ChunkTask
+from orchestrator.studies.sweep.engines import BATCH_CHUNK
 from orchestrator.studies.sweep.job import Chunk, arrays, chunk_scenario, job_from, truths
 from orchestrator.studies.sweep.rows import row_of, why_not_compiled
 from orchestrator.studies.sweep.verdict import OUTCOMES, judge
@@ -298,3 +300,8 @@ def test_each_run_of_a_study_has_the_stop_time_of_its_driver(bind: Any) -> None:
     assert [chunk_scenario(job, chunk, number).longest for number in range(3)] == pytest.approx([725.0, 185.0, 125.0])
     _, _, job, chunk = bind(runs=speeds, set={"stop_time": 40})
     assert (arrays(job, chunk)[1][:, 1] * 1e-9).tolist() == [40.0] * 3
+
+
+@pytest.mark.parametrize(("runs", "chunk"), [(1, 8), (400, 32), (1_984, 128), (100_000, 504)])
+def test_a_study_has_chunks_for_all_cores_that_fill_the_lanes(runs: int, chunk: int) -> None:
+    assert ChunkTask(run_batch, "compiled batch", BATCH_CHUNK, threads=True).chunk_of(runs) == chunk

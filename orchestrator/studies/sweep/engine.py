@@ -17,6 +17,10 @@ Result = tuple[Chunk, Array | NotRunError]
 """A chunk with its rows, or why it has none."""
 CHUNKS_PER_WORKER = 2
 """Chunks handed out per worker."""
+FEWEST_CHUNKS = 16
+"""Chunks of a study, so that no core waits for long while another one does the last of them."""
+MOST_LANES = 8
+"""Compiled runs that advance at once."""
 POLL_INTERVAL = 0.2
 """How often an interrupt is looked for [s]."""
 
@@ -59,10 +63,15 @@ class ChunkTask(NamedTuple):
     work: Work
     name: str
     chunk: int
+    """Most runs of a chunk."""
     threads: bool
     """Threads are enough: the work holds no lock."""
     note: str = ""
     """Why it is not the compiled batch."""
+
+    def chunk_of(self, count: int) -> int:
+        """Return how many runs each chunk of a study of ``count`` runs has: they fill the lanes."""
+        return min(self.chunk, MOST_LANES * -(-count // (MOST_LANES * FEWEST_CHUNKS)))
 
     @property
     def is_compiled(self) -> bool:

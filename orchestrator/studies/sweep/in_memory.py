@@ -19,7 +19,7 @@ def columns_in_memory(study: Study) -> dict[str, Any]:
     task = choose_task(study.scenario, None)
     if task.is_compiled:
         compile_models(tuple(job.measures), study.scenario)
-    todo = chunks(study.design, task.chunk)
+    todo = chunks(study.design, task.chunk_of(len(study.design.seeds)))
     found = sorted(
         all_rows(make_engine(task, None, None).results(job, todo, Interrupt())), key=lambda item: item[0].number
     )

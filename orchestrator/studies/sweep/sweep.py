@@ -69,11 +69,10 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     _check_map(study, [column.name for column in columns])
     _say_what_is_hardly_meant(study)
     store = Store(folder, study.name, columns, about(study, job))
-    if options.resume and store.is_finished():
-        count = len(design.seeds)
-        return Swept(store.table, count, count, 0, 0, 0.0, task.name, task.note)
-    size = store.begin(options.chunk or task.chunk, resume=options.resume, restart=options.restart)
     total = len(design.seeds)
+    if options.resume and store.is_finished():
+        return Swept(store.table, total, total, 0, 0, 0.0, task.name, task.note)
+    size = store.begin(options.chunk or task.chunk_of(total), resume=options.resume, restart=options.restart)
     missing = [chunk for chunk in chunks(design, size) if not store.has(chunk.number)]
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     if missing and task.is_compiled:

@@ -166,6 +166,8 @@ def continue_plan(
             context = FollowingContext(params.car, params.drive)
             progress = begin_path(memory.progress, path, plan.request.start, context)
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
+    elif plan.request.run_in != 0.0:
+        return memory._replace(plan=plan._replace(request=plan.request._replace(run_in=0.0), steps=1))
     is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED)
     is_blocked = is_blocked or memory.perception.remembered[-1].is_present
     reason = Reason.BLOCKED if is_blocked else Reason.NO_PATH
@@ -314,7 +316,8 @@ def _with_plan(
 ) -> ParkingMemory:
     """Return the memory with a request for a path to ``goal``; after ``max_plans`` there is one a manoeuvre.
 
-    A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself.
+    A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself. Into
+    a slot across the road it ends straight, where it can: the wheel turns from full lock about the begin of that line.
     What the sensors measure now of what is ``mapped`` is kept clear of, too: the monitor may not let it nearer.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
@@ -325,7 +328,11 @@ def _with_plan(
     obstacles = with_echoes(mapped, memory.perception.remembered + present)
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
     has_map = memory.strategy == Strategy.POSE
-    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, has_map)
+    run_in = 0.0
+    if memory.strategy == Strategy.SLOT and memory.search.slot.type == SlotType.PERPENDICULAR:
+        turning_time = params.car.steering.angle_limit / params.car.steering.rate_limit
+        run_in = (0.5 if memory.search.slot.is_nose_in else -0.5) * params.drive.speed * turning_time
+    request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, has_map, run_in)
     memory = memory._replace(
         plan=memory.plan._replace(request=request, obstacles=obstacles, plans=memory.plan.plans + 1)
     )

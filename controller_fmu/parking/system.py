@@ -20,10 +20,9 @@ from controller_fmu.parking.following.path_tracking import (
     next_segment,
     profile_speed,
     set_out,
-    standstill_wheel_angle,
     track_path,
 )
-from controller_fmu.parking.following.rolling_steering import standstill_before
+from controller_fmu.parking.following.rolling_steering import reference_at, standstill_before
 from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
@@ -184,9 +183,9 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     searches = params.search.active
     wants_out = searches and inputs.driver_selection.task == ChosenTask.PULL_OUT
     is_out = memory.strategy == Strategy.PULL_OUT
-    is_resumed = (
-        not wants_out and search.resumes and standing and inputs.apa_switch and is_near_slot(memory, inputs.odometry)
-    )
+    corner = row_point(search.slot.row, search.slot.behind.end, search.slot.front)
+    is_near_slot = planar_distance(inputs.odometry.x, inputs.odometry.y, corner.x, corner.y) < MAX_RESUME_DISTANCE
+    is_resumed = not wants_out and search.resumes and standing and inputs.apa_switch and is_near_slot
     planned = memory.plan.is_found
     has_readings = memory.perception.local_map.begun
     is_another = (
@@ -314,13 +313,6 @@ def is_slot_kept(memory: ParkingMemory) -> bool:
     return memory.search.slot.type != SlotType.NONE and (was_driven or memory.search.resumes)
 
 
-def is_near_slot(memory: ParkingMemory, pose: Pose) -> bool:
-    """Return whether a vehicle at ``pose`` is so near to the slot that its place is still known."""
-    slot = memory.search.slot
-    corner = row_point(slot.row, slot.behind.end, slot.front)
-    return planar_distance(pose.x, pose.y, corner.x, corner.y) < MAX_RESUME_DISTANCE
-
-
 def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
     """Return the memory of a vehicle at ``pose`` that is shown a slot, found now or driven into before."""
     if not memory.search.resumes:
@@ -360,7 +352,9 @@ def _request(
     wheel = memory.steering_wheel_angle
     speed = 0.0
     if state == ParkingState.STEERING:
-        wheel = wheel_request(standstill_wheel_angle(memory.progress, context), 1.0, params)
+        progress = memory.progress
+        ahead = reference_at(progress.path, progress.segment, progress.remaining, context)
+        wheel = wheel_request(math.atan(params.car.wheelbase * ahead.curvature), 1.0, params)
     if state == ParkingState.DRIVING or state == ParkingState.STOPPING:
         wheel = wheel_request(memory.progress.front_wheel_angle, 1.0, params)
     if state == ParkingState.STRAIGHTENING:

@@ -7,8 +7,8 @@ import pytest
 from orchestrator.studies.falsification.counterexamples import rerun_counterexample
 
 CORPUS = Path(__file__).parent / "regression"
-OPEN = {"apa-world-contact-20261124-1"}
-"""A pedestrian walks into a vehicle that stands and waits."""
+OPEN = {"apa-world-contact-20261124-1", "apa-world-contact-4711-3"}
+"""A pedestrian walks into a vehicle that stands and waits; a neighbour drives out beside one that backs in."""
 
 
 @pytest.mark.parametrize("path", sorted(CORPUS.glob("*.yaml")), ids=lambda path: path.stem)

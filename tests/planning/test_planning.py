@@ -103,6 +103,21 @@ def _words(store: PlanningWork, end: Pose, request: WordRequest, problem: Search
     ]
 
 
+@pytest.mark.parametrize("run_in", [-0.7, 0.7])
+@pytest.mark.parametrize("y", [3.0, -2.0])
+def test_a_path_ends_with_the_straight_line_that_is_requested(y: float, run_in: float) -> None:
+    """From the road the tree is rooted at the goal, from beside it at the start."""
+    request = request_of(Pose(1.0, y, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)._replace(run_in=run_in)
+    store = plan(request, scene_of(BOXES))
+    assert store.counts[PlanCount.STATUS] == PlanningStatus.PLANNED
+    path = path_of_plan(store, request)
+    last = path.segments[path.used - 1]
+    assert last[:2] == (run_in, 0.0)
+    end = poses_along(request.start, kept(store))[-1]
+    assert (end.x, end.y, math.remainder(end.heading, 2.0 * math.pi)) == pytest.approx((-1.2, -2.0, 0.0), abs=1e-3)
+    assert least_clearance(poses_along(request.start, kept(store)), BOXES, CAR) > 0.09
+
+
 def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
     request = request_of(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), 0.1)
     store = plan(request, scene_of(BOXES))

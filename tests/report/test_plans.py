@@ -63,7 +63,7 @@ def test_plans_follow_the_run(recording: Any) -> None:
     assert "slot" not in plans[0]
     last = plans[-1]
     assert last["target"][1] == pytest.approx(recording.signals["vehicle.pose.y"][-1], abs=0.05)
-    assert last["target"][2] == pytest.approx(recording.signals["vehicle.pose.heading"][-1], abs=0.01)
+    assert last["target"][2] == pytest.approx(recording.signals["vehicle.pose.heading"][-1], abs=0.025)
     assert len(last["slot"]) == 4
     assert [plan["t"] for plan in plans] == sorted(plan["t"] for plan in plans)
     assert max(arrays.lengths) > 20

@@ -144,12 +144,6 @@ def is_at_end(progress: PathProgress) -> bool:
     return progress.remaining <= MIN_REMAINING and progress.segment + 1 >= progress.path.used
 
 
-def standstill_wheel_angle(progress: PathProgress, context: FollowingContext) -> float:
-    """Return the front-wheel angle [rad] with which the segment in hand goes on from a standstill."""
-    curvature = reference_at(progress.path, progress.segment, progress.remaining, context).curvature
-    return math.atan(context.car.wheelbase * curvature)
-
-
 def profile_speed(progress: PathProgress, speed: SpeedTracking, limit: float, context: FollowingContext) -> float:
     """Return the speed [m/s] to request, at most ``limit`` but never below the creep speed."""
     slowing = stopping_speed(progress, speed, context)

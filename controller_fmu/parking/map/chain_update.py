@@ -152,7 +152,9 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at > 0:
-        parts = ChainEnd(False, half_gap(chain.echoes[at], whole.landmark), True)
+        distance = distance_to_segment(whole.landmark, chain.echoes[at].x, chain.echoes[at].y)
+        square = chain.echoes[at].range * chain.echoes[at].range - distance * distance
+        parts = ChainEnd(False, math.sqrt(max(square, 0.0)), True)
         first = _fit_part(chain, 0, at - 1, reading, begins, parts)
         second = _fit_part(chain, at, last, reading, parts, ends)
         segments = (whole.landmark, first.landmark, second.landmark)
@@ -249,12 +251,6 @@ def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, varian
             if abs(predicted_echo.distance - echo.range) > tolerance + opening:
                 outside += 1
     return 4 * outside <= chain.used
-
-
-def half_gap(echo: ChainEcho, segment: Landmark) -> float:
-    """Return half of the gap [m] between two bodies by the echo at its middle: range2 = distance2 + (gap / 2)2."""
-    distance = distance_to_segment(segment, echo.x, echo.y)
-    return math.sqrt(max(echo.range * echo.range - distance * distance, 0.0))
 
 
 def range_behind(segment: Landmark, echo: ChainEcho) -> float:

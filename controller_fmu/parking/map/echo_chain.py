@@ -112,13 +112,15 @@ def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> Ec
 
 
 def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoChain:
-    """Return the chain with one more echo at ``measured`` [m], if the sensor has moved."""
+    """Return the chain with an echo at ``measured`` [m], if the sensor has moved; a full one keeps every second."""
     last = chain.echoes[max(chain.used - 1, 0)]
     chain = chain._replace(lost=0)
     if planar_distance(sensor.x, sensor.y, last.x, last.y) < chain.spacing:
         return chain
     if chain.used >= MAX_ECHOES:
-        chain = _thin(chain)
+        echoes = tuple(chain.echoes[min(2 * number, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
+        chain = chain._replace(used=MAX_ECHOES // 2, echoes=echoes, fitted=chain.fitted // 2)
+        chain = chain._replace(spacing=2.0 * chain.spacing)
     echo = ChainEcho(sensor.x, sensor.y, measured, sensor.axis_x, sensor.axis_y)
     at = min(max(chain.used, 0), MAX_ECHOES - 1)
     return chain._replace(used=at + 1, echoes=chain.echoes[:at] + (echo,) + chain.echoes[at + 1 :])
@@ -128,9 +130,3 @@ def without_echoes_before(chain: EchoChain, first: int) -> EchoChain:
     """Return the chain without the echoes before ``first``: they were of another body, beyond an edge."""
     echoes = tuple(chain.echoes[min(number + first, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
     return chain._replace(used=chain.used - first, echoes=echoes, begins_at_edge=True, landmark=-1, fitted=0)
-
-
-def _thin(chain: EchoChain) -> EchoChain:
-    """Return the chain with every second echo, at twice the spacing."""
-    echoes = tuple(chain.echoes[min(2 * number, MAX_ECHOES - 1)] for number in range(MAX_ECHOES))
-    return chain._replace(used=MAX_ECHOES // 2, echoes=echoes, spacing=2.0 * chain.spacing, fitted=chain.fitted // 2)

@@ -61,11 +61,6 @@ class Measurement(NamedTuple):
     """Blind zone of the sensor [m]."""
 
 
-def is_on_one_side(number: int, other: int) -> bool:
-    """Return whether two sensors are on the same bumper (0 to 3 in front, 4 to 7 behind) or flank (8, 9 and 10, 11)."""
-    return number // 4 == other // 4 and (number < FRONT_LEFT_SIDE or number // 2 == other // 2)
-
-
 def sensor_pose(mount: SensorMount, half_angle: float, vehicle: Pose) -> SensorPose:
     """Return where a sensor on a vehicle at pose ``vehicle`` is; ``half_angle`` [rad] opens its cone."""
     cos = math.cos(vehicle.heading)

@@ -6,7 +6,7 @@ kind proves that the sensor works. With a dropout probability of 5 %, ``MISSED_E
 
 from typing import NamedTuple
 
-from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus, is_on_one_side
+from controller_fmu.parking.measurement.sensor import FRONT_LEFT_SIDE, MAX_SENSORS, ReadingStatus
 
 MISSED_ECHOES = 6
 """In a row, by a working sensor once in 6e7 times (5 % dropouts)."""
@@ -40,8 +40,10 @@ def is_silent(missed: MissedEchoes, sensor: int) -> bool:
 
 
 def has_blind_side(missed: MissedEchoes) -> bool:
-    """Return whether two sensors beside each other on a bumper or a flank are silent: no other covers their cones."""
+    """Return whether two sensors in a row on a bumper (0 to 3, 4 to 7) or a flank (8, 9; 10, 11) are silent: a gap."""
     return any(
-        is_on_one_side(number, number + 1) and is_silent(missed, number) and is_silent(missed, number + 1)
+        (number % 4 < 3 if number < FRONT_LEFT_SIDE else number % 2 == 0)
+        and is_silent(missed, number)
+        and is_silent(missed, number + 1)
         for number in range(MAX_SENSORS - 1)
     )

@@ -32,9 +32,11 @@ from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, 
 from controller_fmu.parking.planning.work import (
     MAX_CUSPS,
     REQUEST_SIZE,
+    WORK_SEGMENTS,
     PlanCount,
     PlanningWork,
     PlanValue,
+    move_segments,
     set_segment,
 )
 from modelkit.maths import sign
@@ -169,7 +171,7 @@ def step(work: PlanningWork, request: PlanningRequest) -> None:
     elif phase == PlanningPhase.SMOOTH:
         more = smooth(work, problem)
         if not more:
-            _keep_if_better(work, problem)
+            _keep_if_better(work, request.run_in, problem)
             _next_stage(work)
 
 
@@ -202,7 +204,7 @@ def _numbers(request: PlanningRequest) -> tuple[float, ...]:
     return (
         (start.x, start.y, start.heading, goal.x, goal.y, goal.heading)
         + (car.centre_ahead, car.half_length, car.half_width, car.max_curvature)
-        + (request.margin, float(request.max_cusps))
+        + (request.margin, request.run_in, float(request.max_cusps))
     )
 
 
@@ -225,6 +227,7 @@ def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
     goal = problem.root if problem.from_goal else problem.target
     at_start = 0.0 if is_inside(work, request.start) else clearance(work, outline_frame(start), problem)
     at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, outline_frame(goal), problem)
+    at_goal = min(at_goal, clearance(work, outline_frame(Pose(heading=goal.heading)), problem))
     work.values[PlanValue.MIN_END_CLEARANCE] = min(at_start, at_goal)
     work.counts[PlanCount.GOAL_TIGHTER] = 0 if at_start < at_goal else 1
     if at_start <= 0.0:
@@ -248,8 +251,10 @@ def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
     work.counts[PlanCount.PHASE] = PlanningPhase.SEARCH
 
 
-def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
+def _keep_if_better(work: PlanningWork, run_in: float, problem: SearchProblem) -> None:
     """Keep the path if it is the best yet; from a pose to itself it is one segment without a distance."""
+    if run_in != 0.0 and work.counts[PlanCount.SEGMENT_COUNT] < WORK_SEGMENTS:
+        _add_run_in(work, run_in, problem)
     if work.counts[PlanCount.SEGMENT_COUNT] == 0:
         set_segment(work, 0, problem.root, 0.0, 0.0)
         work.counts[PlanCount.SEGMENT_COUNT] = 1
@@ -266,6 +271,17 @@ def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
     work.counts[PlanCount.BEST_SEGMENT_COUNT] = count
     work.values[PlanValue.BEST_PATH_COST] = cost
     work.values[PlanValue.BEST_PATH_MARGIN] = problem.margin
+
+
+def _add_run_in(work: PlanningWork, run_in: float, problem: SearchProblem) -> None:
+    """Add the straight line to the goal to the path in hand, which may begin there."""
+    count = work.counts[PlanCount.SEGMENT_COUNT]
+    work.counts[PlanCount.SEGMENT_COUNT] = count + 1
+    if problem.from_goal:
+        move_segments(work, 0, count, 1)
+        set_segment(work, 0, pose_along_arc(problem.root, run_in, 0.0), -run_in, 0.0)
+    else:
+        set_segment(work, count, problem.target, run_in, 0.0)
 
 
 def cusps_of(work: PlanningWork) -> int:

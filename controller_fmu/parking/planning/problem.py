@@ -23,6 +23,8 @@ class PlanningRequest(NamedTuple):
     """Changes of direction of a path that is taken."""
     has_map: bool = False
     """The polygons of the given map are obstacles, too."""
+    run_in: float = 0.0
+    """Length [m] of the straight line with which a path ends, reverse negative."""
 
 
 class SearchGrid(NamedTuple):

@@ -2,6 +2,7 @@
 
 import math
 
+from controller_fmu.parking.geometry.outline import pose_along_arc
 from controller_fmu.parking.planning.problem import (
     PlanningRequest,
     SearchGrid,
@@ -71,7 +72,7 @@ def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProble
     """Return the search of the stage in hand."""
     stage = SEARCH_SCHEDULE[work.counts[PlanCount.STAGE]]
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
-    goal = Pose(0.0, 0.0, request.goal.heading)
+    goal = pose_along_arc(Pose(0.0, 0.0, request.goal.heading), -request.run_in, 0.0)
     clearance = work.values[PlanValue.MIN_END_CLEARANCE] - CLEARANCE_RESERVE
     margin = max(min(request.margin * stage.margin_fraction, clearance), MIN_MARGIN)
     from_goal = stage.root_at_tighter_end == (work.counts[PlanCount.GOAL_TIGHTER] == 1)

@@ -21,7 +21,7 @@ CROWDING_CELLS = 8192
 MAX_WORDS = 64
 WORD_SEGMENTS = 3
 WORK_SEGMENTS = 256
-REQUEST_SIZE = 12
+REQUEST_SIZE = 13
 MAX_CUSPS = REQUEST_SIZE - 1
 """Place of that number among those of the request."""
 NO_INDEX = -1

@@ -235,18 +235,14 @@ def _row_of(
                 total -= min(free, MAX_FREE_BODY)
             elif is_post or is_narrow:
                 car = _as_post(car, lean)
-            total += -LOG_TEN if is_post else _pitch_log_likelihood(pitch)
+            apart = length_log_likelihood(min(pitch, BAY_WIDTH), True, BAY_WIDTH, BAY_SIGMA)
+            total += -LOG_TEN if is_post else max(apart, -LOG_TEN)
             before = first
             first = behind
             row = with_member(row, row.used, car)._replace(used=row.used + 1)
     line = _line_through(row, line, lean)
     row = row._replace(slope=row.side * line.slope, front_at=line.at)
     return AngledRow(row, total)
-
-
-def _pitch_log_likelihood(pitch: float) -> float:
-    """Return the log-likelihood of a distance [m] of two corners, if less than a bay's: of ten, one is of a post."""
-    return max(length_log_likelihood(min(pitch, BAY_WIDTH), True, BAY_WIDTH, BAY_SIGMA), -LOG_TEN)
 
 
 def _line_through(row: SlotRow, line: RoadLine, lean: float) -> RoadLine:

@@ -317,7 +317,7 @@ def _with_plan(
     """Return the memory with a request for a path to ``goal``; after ``max_plans`` there is one a manoeuvre.
 
     A path may change its direction once less than manoeuvres are allowed: to set out in reverse is one by itself. Into
-    a slot across the road it ends straight, where it can: the wheel turns from full lock about the begin of that line.
+    a slot found across the road it ends straight, if it can: the wheel turns from full lock about where that begins.
     What the sensors measure now of what is ``mapped`` is kept clear of, too: the monitor may not let it nearer.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
@@ -329,7 +329,7 @@ def _with_plan(
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
     has_map = memory.strategy == Strategy.POSE
     run_in = 0.0
-    if memory.strategy == Strategy.SLOT and memory.search.slot.type == SlotType.PERPENDICULAR:
+    if memory.search.slot_filter.is_begun and memory.search.slot.type == SlotType.PERPENDICULAR:
         turning_time = params.car.steering.angle_limit / params.car.steering.rate_limit
         run_in = (0.5 if memory.search.slot.is_nose_in else -0.5) * params.drive.speed * turning_time
     request = PlanningRequest(inputs.odometry, goal, outline, params.plan.margin, cusps, has_map, run_in)

@@ -35,7 +35,7 @@ Which manoeuvre follows a stop depends on millimetres there; 9 of 1,000 outcomes
 EXCEPTIONS = {
     "preview-geometry": "the sample at which the end of a lap of 172 s is reached",
     "preview-single": "none: it leaves the road, and swings after that",
-    "valet-external-slot": "after five manoeuvres it stands within the limits, or shifts once more",
+    "valet-external-slot": "on its way in it goes on along its path, or plans again",
     "valet-parallel": "after move 3 it goes on along its path, or stops for an echo and plans again",
 }
 """Scenario -> the decision that changes."""

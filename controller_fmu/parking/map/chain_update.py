@@ -152,6 +152,7 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     whole = _fit_part(chain, begin, last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at > 0:
+        # half of the gap between both bodies, by the echo at its middle: range2 = distance2 + (gap / 2)2
         distance = distance_to_segment(whole.landmark, chain.echoes[at].x, chain.echoes[at].y)
         square = chain.echoes[at].range * chain.echoes[at].range - distance * distance
         parts = ChainEnd(False, math.sqrt(max(square, 0.0)), True)

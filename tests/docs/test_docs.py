@@ -15,15 +15,17 @@ from orchestrator.cli import EPILOG, parser
 from orchestrator.commands import COMMANDS
 from orchestrator.commands.export import FORMATS
 from orchestrator.evaluation.verdict.judge import Check
-from orchestrator.evaluation.verdict.summary import Event, Final, FmuUsed, Summary
+from orchestrator.evaluation.verdict.summary import Event, Final, FmuUsed, Summary, summarize
 from orchestrator.inputs.scenario.catalogue import split_index
 from orchestrator.inputs.scenario.end_condition import EndCondition
 from orchestrator.inputs.scenario.fault import Fault
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.models import MODELS, models_for
+from orchestrator.inputs.scenario.plausible import implausible
 from orchestrator.inputs.scenario.requirements import Occasion, Requirement, Window, read_requirements
 from orchestrator.inputs.scenario.scenario import Scenario, Slot, Target
 from orchestrator.inputs.scenario.slot_layout import LayoutKerb, LayoutOrigin, Neighbours, SlotLayout
+from orchestrator.session.session import run_scenario
 from orchestrator.studies.sweep.study.study_file import load_study
 from tests.docs.scripts import script
 
@@ -86,14 +88,18 @@ def named(study: bool) -> list[str]:
 def test_studies_in_the_documentation_are_valid(text: Any, tmp_path: Path) -> None:
     file = tmp_path / "study.yaml"
     file.write_text(text)
-    assert load_study(str(file)).name == yaml.safe_load(text)["name"]
+    assert load_study(str(file))[0].name == yaml.safe_load(text)["name"]
 
 
 @pytest.mark.parametrize("text", named(study=False))
 def test_scenarios_in_the_documentation_are_valid(text: Any, tmp_path: Path) -> None:
     file = tmp_path / "scenario.yaml"
     file.write_text(text)
-    assert load_scenario(str(file)).name == yaml.safe_load(text)["name"]
+    scenario = load_scenario(str(file))
+    assert scenario.name == yaml.safe_load(text)["name"]
+    if "expected_outcome" in text:
+        summary = summarize(run_scenario(scenario).recording, scenario, 0.0)
+        assert (summary.outcome, list(implausible(scenario))) == (scenario.expected_outcome, [])
 
 
 def rules() -> list[str]:

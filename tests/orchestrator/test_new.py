@@ -72,7 +72,7 @@ def test_a_mistake_in_the_model_is_told_with_its_line(made: str, capsys: pytest.
 def test_a_name_that_is_taken_is_refused(made: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "controller", made]) == 2
     assert "is there already" in capsys.readouterr().err
-    for name in ("my-law", "json", "modelkit", "1st"):
+    for name in ("my-law", "json", "modelkit", "1st", "class"):
         assert main(["new", "vehicle", name]) == 2
         assert f"{name}: is no name for a package" in capsys.readouterr().err
 
@@ -103,6 +103,7 @@ def test_a_scenario_and_a_study_run_without_warnings(
     assert main(["run", "my-slot.yaml", *short]) == 1
     for study in ("studies/my-study.yaml", "case4.yaml"):
         assert main(["sweep", study, "--stride", "12", *short]) == 0
+    assert main(["replay", "runs/my-study/my-study.parquet", "--row", "0", "--no-page"]) == 1
     assert "warning" not in capsys.readouterr().err
     assert main(["new", "scenario", "my-slot.yaml"]) == 2
     assert "my-slot.yaml: is there already" in capsys.readouterr().err

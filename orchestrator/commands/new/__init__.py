@@ -1,6 +1,7 @@
 """``apa new``: a controller, a vehicle, a scenario, a study or a pipeline of your own that runs at once."""
 
 import argparse
+import keyword
 import os
 import re
 import sys
@@ -92,8 +93,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _package_name(name: str) -> str:
     if not name:
         raise BadInput("is missing: apa new KIND NAME", key="NAME")
-    if not (name.isidentifier() and name.isascii()) or name in RESERVED or name in sys.stdlib_module_names:
-        text = "is no name for a package: write letters, digits and _, and nothing that Python or apa has"
+    is_name = name.isidentifier() and name.isascii() and not keyword.iskeyword(name)
+    if not is_name or name in RESERVED or name in sys.stdlib_module_names:
+        text = "is no name for a package: write letters, digits and _, and no word or module of Python or apa"
         raise BadInput(text, key=name)
     return name
 

@@ -145,8 +145,11 @@ class Scenario(_ScenarioPart):
         return {**(entry.parameters if entry else {}), **own}
 
     def as_written(self) -> dict[str, Any]:
-        """Return the content of an equal scenario file without ``extends`` and ``car``; paths of FMUs remain."""
-        unwritten = {"file", "extends", "car", "overrides", "unsupported_parameters", "texts"}
+        """Return the content of an equal scenario file without ``extends`` and ``car``; paths of FMUs remain.
+
+        What ``slot_layout`` generates stands in its place.
+        """
+        unwritten = {"file", "extends", "car", "slot_layout", "overrides", "unsupported_parameters", "texts"}
         content = self.model_dump(mode="python", exclude=unwritten, by_alias=True, exclude_none=True)
         for owner, texts in self.texts.items():
             content[owner] = {**content[owner], **texts}

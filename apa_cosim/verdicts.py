@@ -40,7 +40,7 @@ def _requirement(written: Mapping[str, Any]) -> Requirement:
     try:
         return Requirement.model_validate({"source": "asked here", **written})
     except ValidationError as error:
-        raise explain(error, None, list(Requirement.model_fields)) from None
+        raise explain(error, None, Requirement) from None
 
 
 def compare(

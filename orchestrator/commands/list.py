@@ -13,13 +13,12 @@ from rich.table import Table
 from orchestrator.commands import STUDIES
 from orchestrator.evaluation.verdict.limit_text import requirement_text
 from orchestrator.inputs.scenario.catalogue import Entry, entries, match_entries, range_text, start_text, systems
-from orchestrator.inputs.scenario.files import LIBRARY, car_names
+from orchestrator.inputs.scenario.files import LIBRARY, car_names, library_names
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.scenario.requirements import read_requirements
 from orchestrator.inputs.text.console import console
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.yaml_file import read_mapping
-from orchestrator.studies.sweep.study.study_file import study_names
 
 EXAMPLES = """examples:
   apa list                             scenarios, controllers, cars, requirements, studies
@@ -68,9 +67,13 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _study_names() -> list[str]:
+    return sorted([*library_names("studies"), *STUDIES])
+
+
 def _overview(as_json: bool) -> int:
     heads, scenarios = _scenarios(None)
-    names = {"cars": car_names(), "requirements": _requirement_sets(), "studies": sorted([*study_names(), *STUDIES])}
+    names = {"cars": car_names(), "requirements": _requirement_sets(), "studies": _study_names()}
     if as_json:
         print(json.dumps({"scenarios": scenarios, "controllers": systems(), **names}, indent=2))
         return 0
@@ -106,7 +109,7 @@ def _cars(pattern: str | None) -> tuple[dict[str, str], Rows]:
 
 
 def _studies(pattern: str | None) -> tuple[dict[str, str], Rows]:
-    return _titles(sorted([*study_names(), *STUDIES]), "studies", "study (apa sweep NAME)", pattern)
+    return _titles(_study_names(), "studies", "study (apa sweep NAME)", pattern)
 
 
 def _titles(names: list[str], folder: str, head: str, pattern: str | None) -> tuple[dict[str, str], Rows]:

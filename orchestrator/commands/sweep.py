@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
 from orchestrator.commands import STUDIES
-from orchestrator.inputs.text.console import console, result_table
+from orchestrator.inputs.text.console import console, result_table, resuming_command
 from orchestrator.inputs.text.errors import INTERRUPTED, PARKED, BadInput, format_value, suggestion_or_choices
 from orchestrator.inputs.text.failures import verdict_stands
 from orchestrator.inputs.text.locked_folder import lock_folder
@@ -83,15 +83,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run what is missing, write table and page, print the outcome. Returns 0, or what the study makes of its table;
     130 if interrupted."""
-    for name in ("jobs", "chunk", "stride"):
-        if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
-            raise BadInput(f"{getattr(arguments, name)}: expected 1 or more", key=f"--{name}")
+    for name, least in {"jobs": 1, "chunk": 1, "stride": 1, "runs": 1, "seed": 0, "offset": 0}.items():
+        value = getattr(arguments, name)
+        if value is not None and value < least:
+            raise BadInput(f"{value}: expected {least} or more", key=f"--{name}")
     try:
         from orchestrator.studies.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
         raise BadInput(missing_package(error.name or "", "native,sweep")) from error
-    if arguments.offset < 0:
-        raise BadInput(f"{arguments.offset}: expected 0 or more", key="--offset")
     if arguments.figure is not None:
         check_picture(arguments.figure)
     own = [f"{key}={getattr(arguments, key)}" for key in ("runs", "seed") if getattr(arguments, key) is not None]
@@ -146,7 +145,7 @@ def _tell(swept: "Swept", written: dict[str, Path], arguments: argparse.Namespac
         files = {name: str(path) for name, path in written.items()}
         print(json.dumps({**numbers, "engine": swept.engine, "note": swept.note, **files}, indent=2))
     else:
-        _print(swept, written, arguments.study)
+        _print(swept, written)
 
 
 def select_study(name: str, sets: list[str]) -> "Study":
@@ -249,7 +248,7 @@ def _write_live_page(path: Path) -> str:
     return ""
 
 
-def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
+def _print(swept: "Swept", written: dict[str, Path]) -> None:
     screen = console()
     if swept.note:
         screen.print(f"not compiled: {swept.note}", markup=False)
@@ -259,7 +258,7 @@ def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
     if swept.aborted:
         screen.print(f"{swept.aborted} of {swept.made} runs were aborted by a model", markup=False)
     if swept.table is None and swept.not_run is None:
-        screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: apa sweep {study} --resume")
+        screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: {resuming_command()}", markup=False)
     if swept.table is not None:
         screen.print(_outcome_table(swept.table))
     for name, path in written.items():

@@ -136,6 +136,7 @@ def test_an_interrupted_hunt_goes_on_to_the_same_end(
     _, resumed = hunted(capsys, *words, "--out", str(out), "--resume")
     assert {**resumed, "page": ""} == {**whole, "page": ""}
     assert main(["falsify", *words, "--seed", "9", "--out", str(out), "--resume"]) == 2
+    assert "made with another seed;" in capsys.readouterr().err
 
 
 def test_the_space_of_a_study_is_that_of_its_columns(study: Any) -> None:
@@ -154,7 +155,7 @@ def test_what_cannot_be_hunted_is_refused(study: Any, capsys: pytest.CaptureFixt
     made = read_study(study(TRUE), {})
     assert objective_of(made, None).name == "contact"
     assert objective_of(made, "gbt41630").limits
-    with pytest.raises(BadInput, match="did you mean"):
+    with pytest.raises(BadInput, match="--requirement: final heeding: no requirement of this name; did you mean"):
         objective_of(made, "final heeding")
     assert main(["falsify"]) == 2
     assert main(["falsify", "no-such-study"]) == 2
@@ -166,7 +167,7 @@ def test_resume_of_a_hunt_that_has_not_begun_begins_it(tmp_path: Path) -> None:
     _open(tmp_path / "journal", "{}", resume=True)
     assert (tmp_path / "journal" / "about.json").read_text() == "{}"
     (tmp_path / "journal" / "about.json").write_bytes(b"\xff")
-    with pytest.raises(BadInput, match="of another hunt"):
+    with pytest.raises(BadInput, match="another description, which is damaged"):
         _open(tmp_path / "journal", "{}", resume=True)
 
 

@@ -10,13 +10,13 @@ from fmus.contents.variables import fmi_variables, limits
 from modelkit.model import Model
 from modelkit.signal import Group, Role, Signal
 from modelkit.variables import limits_of, variables
-from orchestrator.inputs.scenario.files import car_names
+from orchestrator.inputs.scenario.files import car_names, library_names
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.studies.bakeoff.entries import entries
 from orchestrator.studies.parking.cases import cases, scenario_of
 from orchestrator.studies.sweep.study.sampling import make_design
-from orchestrator.studies.sweep.study.study_file import load_study, study_names
+from orchestrator.studies.sweep.study.study_file import load_study
 from vehicle_fmu import MODEL as VEHICLE
 
 
@@ -62,9 +62,9 @@ def test_cars(name: Any) -> None:
     assert outside_of(load_scenario("guo2015-case4", [f"car={name}"])) == []
 
 
-@pytest.mark.parametrize("name", study_names())
+@pytest.mark.parametrize("name", library_names("studies"))
 def test_studies(name: Any) -> None:
-    study = load_study(name)
+    study, _ = load_study(name)
     design = make_design(study, load_scenario(study.scenario, []))
     assert len(design.values) > 0
     for field, column in zip(design.fields, design.values.T, strict=True):

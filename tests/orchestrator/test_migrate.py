@@ -96,7 +96,7 @@ def test_a_study_and_an_open_loop_test_are_rewritten(tmp_path: Path) -> None:
     assert set(study["runs"]["grid"]) == {"vehicle.road.grade, vehicle.road.cross_slope"}
     assert study["within"] == {"house": ["project", "gbt41630"]}
     assert study["measures"] == {"most": {"last": "controller.manoeuvres"}}
-    assert load_study(str(tmp_path / "old.yaml")).name == "old"
+    assert load_study(str(tmp_path / "old.yaml"))[0].name == "old"
     test = yaml.safe_load(migrated(tmp_path, TEST))
     assert (test["inputs"], test["expect"][0]["signal"]) == ({"manual.active": True}, "manual.brake")
 

@@ -122,6 +122,45 @@ def test_a_mistake_is_one_clear_sentence(bind: Any, runs: Any, says: str) -> Non
         bind(runs=runs)
 
 
+GRID, SAMPLES = "runs: {grid: {", "runs: {monte_carlo: {n: 3, "
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (f"{GRID}stop_time: {{from: 1, to: 2, steps: 0}}}}}}", r":3: runs\.grid\.stop_time\.steps: 0: input"),
+        (
+            f"{GRID}stop_time: {{from: 1, to: 2, steps: 1}}}}}}",
+            r":3: runs\.grid\.stop_time: steps: 1 value is not both",
+        ),
+        (f"{GRID}stop_time: {{from: 1, to: 2, stpes: 9}}}}}}", r"runs\.grid\.stop_time\.stpes: unknown; .* steps\?"),
+        (f"{GRID}stop_time: 3}}}}", r":3: runs\.grid\.stop_time: 3: input should be a valid list"),
+        (f"{GRID}stop_time: [3 kg]}}}}", r":3: stop_time: '3 kg' is in 'kg'"),
+        (
+            f"{SAMPLES}vehicle.start.x: {{unifrom: [0, 1]}}}}}}",
+            r":3: .*vehicle\.start\.x\.unifrom: unknown; .* uniform\?",
+        ),
+        (f"{SAMPLES}vehicle.start.x: {{uniform: [1, 0]}}}}}}", r":3: vehicle\.start\.x: uniform from 1 to 0"),
+        (f"{SAMPLES}vehicle.start.x: {{choice: []}}}}}}", r":3: .*choice: \[\]: list should have at least 1 item, not"),
+        ("runs: {}\nset: {seed: -1}", r"s\.yaml:4: seed: -1: input"),
+        ("runs: {}\nwithin: {own: [projekt]}", r"s\.yaml:4: within\.own: projekt: no set of requirements"),
+    ],
+)
+def test_a_mistake_in_a_file_is_told_with_its_file_line_and_key(tmp_path: Path, text: str, says: str) -> None:
+    file = tmp_path / "s.yaml"
+    file.write_text(f"name: s\nscenario: guo2015-case4\n{text}\n")
+    with pytest.raises(BadInput, match=says):
+        read_study(str(file), {})
+
+
+def test_the_study_that_names_no_scenario_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "s.yaml"
+    for name, why in {"nowhere.yaml": "no such file", "guo2015-case44": "no scenario of this name"}.items():
+        file.write_text(f"scenario: {name}\nruns: {{}}\n")
+        with pytest.raises(BadInput, match=f"s.yaml:1: scenario: {name}: {why}"):
+            read_study(str(file), {})
+
+
 def test_different_numbers_of_samples_are_refused() -> None:
     samples = [{"n": count, "vehicle.start.x": {"uniform": [0, 1]}} for count in (2, 3)]
     runs: Any = {"monte_carlo": samples[0], "latin_hypercube": samples[1]}

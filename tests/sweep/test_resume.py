@@ -104,7 +104,8 @@ def test_an_interrupted_study_keeps_what_is_done(study: Any, whole: Any, tmp_pat
     process.send_signal(signal.SIGINT)
     out, error = process.communicate()
     assert process.returncode == 130, error
-    assert "go on with: apa sweep" in out
+    assert f"go on with: apa sweep {study} --out {tmp_path} " in " ".join(out.split())
+    assert out.split("\n")[-2].endswith("--resume")
     assert f"{len(parts(tmp_path)) * CHUNK} of {COUNT} runs are kept" in out
     assert sweep(study, tmp_path, "--resume").read_bytes() == whole.read_bytes()
 
@@ -121,7 +122,10 @@ def test_an_unfinished_study_is_not_overwritten_unasked(
     other.write_text(study.read_text().replace("2.0]", "2.1]"))
     assert main(["sweep", str(other), "--out", str(tmp_path), "--no-page", "--resume"]) == 2
     assert "made with another design and study" in capsys.readouterr().err
-    assert Table(sweep(small, tmp_path, "--restart")).count == 4
+    finished = Table(sweep(small, tmp_path, "--restart"))
+    assert finished.count == 4
+    assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page", "--resume"]) == 2
+    assert f"{finished.path}: its runs were made with another design and job and study" in capsys.readouterr().err
 
 
 def test_a_study_may_be_finished_by_another_engine(small: Any, tmp_path: Path) -> None:

@@ -8,14 +8,14 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.commands import STUDIES
+from orchestrator.inputs.scenario.files import library_names
 from orchestrator.studies.sweep.batch import run_batch
 from orchestrator.studies.sweep.engines import choose_task
 from orchestrator.studies.sweep.job import Chunk, make_job
 from orchestrator.studies.sweep.study.read_study import read_study
-from orchestrator.studies.sweep.study.study_file import study_names
 from orchestrator.studies.sweep.study_code import STUDY_CODE_FROM, StudyRows
 
-SHIPPED = [*STUDIES, *study_names()]
+SHIPPED = [*STUDIES, *library_names("studies")]
 RUNS = 12
 
 

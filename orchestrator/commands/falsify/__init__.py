@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fmus.installation import missing_package
 from orchestrator.commands.sweep import select_study
-from orchestrator.inputs.text.console import console
+from orchestrator.inputs.text.console import console, resuming_command
 from orchestrator.inputs.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
 from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.simulation.cosim.kinds import KINDS
@@ -85,9 +85,7 @@ def _hunt(arguments: argparse.Namespace) -> int:
         try:
             result = falsify(subject, arguments.budget, arguments.seed, out / "counterexamples")
         except Stopped:
-            console().print(
-                f"{subject.runs} runs are kept; go on with: apa falsify {arguments.study} --resume", markup=False
-            )
+            console().print(f"{subject.runs} runs are kept; go on with: {resuming_command()}", markup=False)
             return INTERRUPTED
         except NotRunError as error:
             count = "1 run " if len(error.args) == 1 else ""

@@ -19,4 +19,4 @@ def read_logged_scenario(recording: Recording, file: str = "", name: str = "unna
     try:
         return Scenario(**{"name": name, "vehicle": recording.parameters_of("vehicle"), **carried, "file": file})
     except ValidationError as error:
-        raise explain(error, file or None, list(Scenario.model_fields)) from None
+        raise explain(error, file or None, Scenario) from None

@@ -64,7 +64,7 @@ def vehicle_definition(said: list[tuple[object, object]], folder: Path) -> Vehic
                 raise BadInput(
                     f"{format_value(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}"
                 )
-            found = find_file(base, "cars", "car", beside)
+            found = find_file(base, "cars", "car", beside, file=file, key="car")
             car = (_shipped_car if found.is_relative_to(LIBRARY) else _car_in)(found, base)
         new = _numbers(changes, file)
         car = car._replace(reported=merge_flat(car.reported, new.values, new.arrays))

@@ -21,7 +21,7 @@ from orchestrator.inputs.scenario.slot_layout import KEY, expand_layouts, layout
 from orchestrator.inputs.scenario.target_point import as_rear_axle
 from orchestrator.inputs.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.inputs.scenario.wiring.system_text import NO_FILE, SystemText
-from orchestrator.inputs.text.errors import BadInput, format_value, suggestion, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, format_value, suggestion, suggestion_or_choices, why_no_file
 from orchestrator.inputs.text.quantities import text_or_scalar, unit_symbol
 from orchestrator.inputs.text.yaml_file import explain, place_in, read_mapping, read_value
 
@@ -81,7 +81,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
         merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _source_of("target", layers, path))
         scenario = Scenario(**merged, file=str(path), overrides=overrides)
     except ValidationError as error:
-        raise explain(error, _source_of(place_in(error), layers, path), FIELDS) from None
+        raise explain(error, _source_of(place_in(error), layers, path), Scenario, FIELDS) from None
     return _with_parameters(scenario, more).model_copy(update={"controller": _target_parameters(scenario, more)})
 
 
@@ -93,7 +93,7 @@ def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
     try:
         return SystemText.model_validate(merged["system"])
     except ValidationError as error:
-        raise explain(error, f"{path}: system", list(SystemText.model_fields)) from None
+        raise explain(error, f"{path}: system", SystemText) from None
 
 
 def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]]:
@@ -190,8 +190,10 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
         raise BadInput(f"a chain of more than {MAX_EXTENDED} files", file=seen[0], key="extends")
     content = _resolve_files(_content_of(path), path)
     base = content.get("extends")
-    below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
-    return [*below, (content, path)]
+    if base is None:
+        return [(content, path)]
+    below = find_file(str(base), "scenarios", "scenario", path.parent, file=path, key="extends")
+    return [*_layers(below, (*seen, path)), (content, path)]
 
 
 def _content_of(path: Path) -> dict[str, Any]:
@@ -216,7 +218,7 @@ def _resolve_files(content: dict[str, Any], path: Path) -> dict[str, Any]:
     if isinstance(system.get("ssp"), str):
         file = path.parent / str(system["ssp"])
         if not file.is_file():
-            raise BadInput("no such file", file=path, key=f"system.ssp: {file}")
+            raise BadInput(why_no_file(file), file=path, key=f"system.ssp: {file}", at="system.ssp")
         made = merge_nested(ssp_system(file), {**made, "ssp": str(file)})
     return {**content, "system": made}
 
@@ -266,15 +268,17 @@ def _value(variable: Variable, given: object, owner: str) -> Parameter:
     return text_or_scalar(given.value, named, file=given.file)
 
 
-def requirements_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
+def requirements_of(
+    given: object, folder: Path, file: object = None, key: str = "requirements"
+) -> list[dict[str, Any]]:
     """Return limits with the names of sets, or of files in ``folder``, replaced by their content."""
     if not isinstance(given, list):
-        raise BadInput(f"{format_value(given)}: expected a list", file=file, key="requirements")
+        raise BadInput(f"{format_value(given)}: expected a list", file=file, key=key)
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
-            file = find_file(item, "requirements", "set of requirements", folder)
-            result += [*_shipped_entries(file)] if file.is_relative_to(LIBRARY) else _entries_in(file)
+            found = find_file(item, "requirements", "set of requirements", folder, file=file, key=key)
+            result += [*_shipped_entries(found)] if found.is_relative_to(LIBRARY) else _entries_in(found)
         else:
             result.append(item)
     return result

@@ -169,7 +169,7 @@ def read_requirements(path: Path) -> list[Requirement]:
         try:
             found.append(Requirement.model_validate(entry))
         except ValidationError as error:
-            mistake = explain(error, None, list(Requirement.model_fields))
+            mistake = explain(error, None, Requirement)
             at = f"[{number}].{place_in(error)}".rstrip(".")
             raise BadInput(f"requirement {number}: {mistake}", file=path, at=at) from None
     return found

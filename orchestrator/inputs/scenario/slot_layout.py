@@ -163,7 +163,7 @@ def layout_of(layers: Iterable[tuple[dict[str, Any], object]]) -> SlotLayout | N
     try:
         return SlotLayout.model_validate(merged)
     except ValidationError as error:
-        wrong = explain(error, None, list(SlotLayout.model_fields))
+        wrong = explain(error, None, SlotLayout)
         raise BadInput(f"{wrong}", file=last, key=KEY) from None
 
 

@@ -1,5 +1,6 @@
 """Talking to people: colours only on a terminal that wants them, progress on standard error, silence if asked for."""
 
+import shlex
 import sys
 import threading
 import time
@@ -23,6 +24,12 @@ PIPED_WIDTH = 200
 """Characters in a line that goes to a file or another program."""
 PERIOD, LONGEST = 5.0, 60.0
 """Until the first line of progress where there is no terminal, and between two at most [s]; each time twice as long."""
+
+
+def resuming_command() -> str:
+    """Return the command line that goes on with what the present one has left unfinished."""
+    words = [word for word in shlex.split(COMMAND.get()) if word not in ("--resume", "--restart")]
+    return shlex.join([*words, "--resume"])
 
 
 def console(stream: TextIO | None = None) -> "Console":

@@ -3,7 +3,9 @@
 import errno
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 from orchestrator.inputs.text.renamed_names import VALUES, is_removed, moved_name, new_name
 
@@ -28,6 +30,15 @@ class BadInput(ValueError):  # noqa: N818 - said as it is
         where = None if file is None else f"{file}:{line}" if line else str(file)
         place = ": ".join(part for part in (where, key) if part)
         super().__init__(as_line(f"{place}: {text}" if place else text))
+
+
+@contextmanager
+def locate_errors(file: object, key: str) -> Iterator[None]:
+    """Name the file, and the line of ``key``, in an error that names neither."""
+    try:
+        yield
+    except BadInput as error:
+        raise BadInput(str(error), file=file, at=key) from None
 
 
 def line_of(file: object, key: str | None) -> int:
@@ -129,6 +140,13 @@ MAX_MESSAGE, MAX_ENDING = 2_000, 300
 """Letters of a message of ours, and of its end where it is cut."""
 MOST_LETTERS = 100
 """A word longer than this is like no other."""
+
+
+def why_no_file(path: Path) -> str:
+    """Return why a path is no file that can be read."""
+    if path.is_dir():
+        return "is a folder, expected a file"
+    return "is no regular file" if path.exists() else "no such file"
 
 
 def rename_hint(key: str, value: object) -> str:

@@ -64,20 +64,19 @@ def number(value: object, unit: str, *, file: object = None, key: str | None = N
     """
     result = _in_si(value, unit, file, key)
     if not any_value and not abs(result) <= MAX_MAGNITUDE:
-        raise BadInput(f"{format_value(value)} is not a number that anything here can have", file=file, key=key)
+        text = f"expected a finite number, not beyond {MAX_MAGNITUDE:g}"
+        raise BadInput(f"{format_value(value)}: {text}", file=file, key=key)
     return result
 
 
 def _in_si(value: object, unit: str, file: object, key: str | None) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise BadInput(f"{format_value(value)} is not a number [{unit}]", file=file, key=key)
+        raise BadInput(f"{format_value(value)} is not a number, expected {_example(unit)}", file=file, key=key)
     if not isinstance(value, str):
         return float(value) if isinstance(value, float) or abs(value) <= MAX_MAGNITUDE else math.inf
     match = _parts(value)
     if match is None:
-        raise BadInput(
-            f"{format_value(value)} is not a number, expected for example {_example(unit)}", file=file, key=key
-        )
+        raise BadInput(f"{format_value(value)} is not a number, expected {_example(unit)}", file=file, key=key)
     magnitude, written = float(match[1]), unit_symbol(match[2]) if match[2] else ""
     if written in ("", unit) or match[2] == unit or written == unit_symbol(unit):
         return magnitude
@@ -132,11 +131,9 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
         result = number(value, variable.signal.unit, file=file, key=key)
     low, high = variable.signal.low, variable.signal.high
     if not low <= result <= high:
-        raise BadInput(
-            f"{format_value(value)} is out of range, expected {low:g} to {high:g} {variable.signal.unit}",
-            file=file,
-            key=key,
-        )
+        unit = f" {variable.signal.unit}".removesuffix(" 1")
+        text = f"{format_value(value)} is out of range, expected {low:g} to {high:g}{unit}"
+        raise BadInput(text, file=file, key=key)
     return result
 
 
@@ -203,4 +200,5 @@ def _integer(value: object, variable: Variable, file: object) -> int:
 
 def _example(unit: str) -> str:
     others = [name for name, (target, _) in FACTORS.items() if target == unit]
-    return f"a number in {unit}" + (f" or text such as '5 {others[0]}'" if others else "")
+    example = f" or text such as '5 {others[0]}'" if others else ""
+    return ("a number" if unit == "1" else f"a number in {unit}") + example

@@ -5,11 +5,14 @@ written twice is refused. Where each key stands is kept, so that a mistake found
 """
 
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import yaml
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
 from orchestrator.inputs.text.errors import (
     LINES,
@@ -18,6 +21,7 @@ from orchestrator.inputs.text.errors import (
     rename_hint,
     suggestion,
     suggestion_or_choices,
+    why_no_file,
 )
 
 MOST_BYTES = 500_000
@@ -133,7 +137,7 @@ def read_yaml(path: Path) -> Any:
     """Return the content of a YAML file. Raises ``BadInput`` with the line if it cannot be read."""
     try:
         if not path.is_file():
-            raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=path)
+            raise BadInput(why_no_file(path), file=path)
         if path.stat().st_size > MOST_BYTES:
             raise BadInput(f"is larger than {MOST_BYTES} bytes", file=path)
         text = path.read_text(encoding="utf-8")
@@ -220,28 +224,61 @@ def read_mapping(path: Path) -> dict[str, Any]:
     return {str(key): value for key, value in content.items()}
 
 
-def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
-    """Return pydantic's first complaint as one sentence with file, key, value and what would be right."""
-    first = error.errors()[0]
+def explain(
+    error: ValidationError, file: object, model: type[BaseModel], known: Iterable[str] | None = None
+) -> BadInput:
+    """Return pydantic's first complaint of a ``model`` as one sentence: file, key, value and what would be right.
+
+    ``known``: the keys of the model, where they are not its fields.
+    """
+    first = _first(error)
     key = place_in(error)
     value = first.get("input")
     if first["type"] == "extra_forbidden":
-        word = str(first["loc"][-1])
-        names = known if len(first["loc"]) == 1 else []
-        hint = suggestion_or_choices(word, names) if names else suggestion(key, ()) or " here"
+        is_nested = known is None or len(first["loc"]) > 1
+        names = _keys_beside(first["loc"], model) if is_nested else known
+        hint = suggestion(key, ()) or suggestion_or_choices(str(first["loc"][-1]), names or ())
         return BadInput(f"unknown{hint}", file=file, key=key)
     if first["type"] == "missing":
         return BadInput("is missing", file=file, key=key)
     cause = first.get("ctx", {}).get("error")
-    text = (
-        str(cause)
-        if isinstance(cause, BadInput)
-        else f"{format_value(value)}: {first['msg'][0].lower()}{first['msg'][1:]}"
-    )
+    if isinstance(cause, BadInput):
+        text = str(cause)
+    elif first["type"] == "string_pattern_mismatch":
+        text = f"{format_value(value)}: expected letters and digits without accents, '_', '-' and '.'"
+    else:
+        message = first["msg"].replace(" after validation", "")
+        text = f"{format_value(value)}: {message[0].lower()}{message[1:]}"
     return BadInput(text + rename_hint(key, value), file=file, key=key)
 
 
+def _first(error: ValidationError) -> ErrorDetails:
+    """Return the complaint that is said: a key that is unknown, if there is one, before the one that it lacks."""
+    return min(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
+
+
+def _keys_beside(place: Sequence[int | str], model: type[BaseModel]) -> list[str]:
+    """Return the keys that are valid where the last part of ``place`` stands, from the fields of ``model``."""
+    models = [model]
+    for part in place[:-1]:
+        fields = [field for item in models for name, field in _fields_by_key(item).items() if name == part]
+        models = [item for field in fields for item in _models_in(field.annotation)] or models
+    return [name for item in models for name in _fields_by_key(item)]
+
+
+def _fields_by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    return {str(field.validation_alias or name): field for name, field in model.model_fields.items()}
+
+
+def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
+    """Yield the models in an annotation such as ``dict[str, Model | None]``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
 def place_in(error: ValidationError) -> str:
-    """Return the key that pydantic's first complaint is about: ``faults[1].signal``."""
-    parts = error.errors()[0]["loc"]
+    """Return the key that pydantic's first complaint is about: ``faults[1].signal``. Parts in <> are not written."""
+    parts = [part for part in _first(error)["loc"] if not str(part).startswith("<")]
     return "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in parts).lstrip(".")

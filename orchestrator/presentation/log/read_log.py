@@ -74,7 +74,7 @@ def read_log(path: Path) -> Recording:
     except BadInput:
         raise
     except ValidationError as error:
-        raise explain(error, path, list(RunInfo.model_fields)) from error
+        raise explain(error, path, RunInfo) from error
     except NO_MEANING as error:
         raise no_layout(error, path) from error
     lacks = recording.info.get(RECOVERED, {}).get("lacks")

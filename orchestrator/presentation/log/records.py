@@ -18,7 +18,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from orchestrator.inputs.text.errors import BadInput, lacks_resources
+from orchestrator.inputs.text.errors import BadInput, lacks_resources, why_no_file
 
 HEAD = struct.Struct("<BQ")
 CHUNK = struct.Struct("<QQQII")
@@ -84,7 +84,7 @@ class LogFile(AbstractContextManager["LogFile"]):
         self._path = path
         try:
             if not path.is_file():
-                raise BadInput("is a folder, expected a log" if path.is_dir() else "no such file", file=path)
+                raise BadInput(why_no_file(path), file=path)
             self._size = path.stat().st_size
             self._file: BufferedReader = path.open("rb")
         except OSError as error:

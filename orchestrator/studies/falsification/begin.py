@@ -20,6 +20,7 @@ from orchestrator.studies.sweep.engine import ChunkTask
 from orchestrator.studies.sweep.engines import RECORDED_CHUNK, choose_task, make_engine
 from orchestrator.studies.sweep.job import Chunk, Job, chunk_scenario
 from orchestrator.studies.sweep.rows import row_of
+from orchestrator.studies.sweep.store import different_keys
 from orchestrator.studies.sweep.study.study import Study
 
 
@@ -49,11 +50,16 @@ def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
 
 
 def _open(journal: Path, about: str, *, resume: bool) -> None:
-    """Make a journal, or go on with one of the same hunt; one that has not begun begins."""
+    """Make a journal, or go on with one of the same search; one that has not begun begins."""
     file = journal / "about.json"
     if resume and file.is_file():
-        if file.read_bytes() != about.encode():
-            raise BadInput("the runs there are of another hunt, or of other models", file=journal, key="--resume")
+        try:
+            changed = different_keys(json.loads(file.read_bytes()), json.loads(about))
+        except (ValueError, AttributeError):
+            changed = ["description, which is damaged"]
+        if changed:
+            text = f"its runs were made with another {' and '.join(changed)}; without --resume the search begins anew"
+            raise BadInput(text, file=journal, key="--resume")
         return
     shutil.rmtree(journal, ignore_errors=True)
     journal.mkdir(parents=True)

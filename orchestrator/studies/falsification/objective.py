@@ -32,7 +32,7 @@ def objective_of(study: Study, name: str | None) -> Objective:
     known |= {item.id: [item] for item in study.scenario.requirements}
     if name not in known:
         hint = suggestion_or_choices(name, [*own, *known])
-        raise BadInput(f"no requirement of this name{hint}", key="--requirement")
+        raise BadInput(f"no requirement of this name{hint}", key=f"--requirement: {name}")
     return _limits(name, known[name])
 
 

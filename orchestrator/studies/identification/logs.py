@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmus.installation import missing_package
-from orchestrator.inputs.text.errors import BadInput, excerpt, lacks_resources, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, excerpt, lacks_resources, suggestion_or_choices, why_no_file
 from orchestrator.inputs.text.quantities import unit_symbol
 from orchestrator.inputs.text.table_file import TableError, read_table, unit_in_name
 from orchestrator.presentation.log.read_log import read_info, read_log
@@ -224,7 +224,7 @@ def read_drive(path: Path, columns: Columns) -> MeasuredDrive:
 
 def _open(path: Path) -> Log:
     if not path.is_file():
-        raise BadInput("no such file" if not path.is_dir() else "is a folder, expected a log", file=path)
+        raise BadInput(why_no_file(path), file=path)
     if path.suffix.lower() in MDF_SUFFIXES:
         return _MdfLog(path)
     if path.suffix.lower() != MCAP_SUFFIX:

@@ -61,6 +61,9 @@ class Store:
         if not self._about.is_file():
             if any(self.parts.glob("*.parquet")):
                 raise BadInput("has runs of a study that is not known; --restart throws them away", file=self.parts)
+            before = self._about_of_table()
+            if resume and before not in (b"", b"?"):
+                self._check_same(json.loads(before), self.table)
             return 0
         if not resume:
             raise BadInput("has an unfinished study; --resume goes on, --restart throws its runs away", file=self.parts)
@@ -69,12 +72,15 @@ class Store:
             about, size = dict(found["about"]), int(found["chunk"])
         except (ValueError, KeyError, TypeError) as error:
             raise BadInput("is damaged; --restart throws the runs away", file=self._about) from error
-        if json.dumps(about, sort_keys=True) != self._text:
-            changed = [key for key, value in json.loads(self._text).items() if about.get(key) != value]
-            raise BadInput(
-                f"its runs were made with another {' and '.join(changed)}; --restart throws them away", file=self.parts
-            )
+        self._check_same(about, self.parts)
         return max(size, 1)
+
+    def _check_same(self, about: dict[str, Any], file: Path) -> None:
+        """Raise ``BadInput`` if what a file says about its study is not this study."""
+        changed = different_keys(about, json.loads(self._text))
+        if changed:
+            text = f"its runs were made with another {' and '.join(changed)}; --restart throws them away"
+            raise BadInput(text, file=file)
 
     def has(self, number: int) -> bool:
         """Return whether the chunk of that number is complete; one that is damaged is not.
@@ -155,6 +161,11 @@ class Store:
 
     def _part(self, number: int) -> Path:
         return self.parts / f"{number:08d}.parquet"
+
+
+def different_keys(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """Return the keys in which two descriptions differ."""
+    return sorted(key for key in before.keys() | now.keys() if before.get(key) != now.get(key))
 
 
 def sum_of(data: bytes) -> tuple[bytes, bytes, int]:

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from pydantic import BaseModel
 
 from orchestrator.inputs.text.console import say
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, why_no_file
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.job import Chunk, job_from
 from orchestrator.studies.sweep.store import ABOUT, sum_of
@@ -48,7 +48,7 @@ class Table:
     def __init__(self, path: Path) -> None:
         self.path = path
         if not path.is_file():
-            raise BadInput("is a folder, expected a table" if path.is_dir() else "no such file", file=path)
+            raise BadInput(why_no_file(path), file=path)
         try:
             self._file = pq.ParquetFile(path, page_checksum_verification=True)
             metadata = self._file.schema_arrow.metadata or {}

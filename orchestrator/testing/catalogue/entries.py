@@ -112,7 +112,7 @@ def read_standard(path: Path) -> Standard:
     try:
         return Standard.model_validate({"key": path.stem, **read_mapping(path)})
     except ValidationError as error:
-        raise explain(error, path, list(Standard.model_fields)) from None
+        raise explain(error, path, Standard) from None
 
 
 def _check_names(entry: str, names: list[str], known: list[str], what: str) -> None:

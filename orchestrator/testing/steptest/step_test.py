@@ -117,7 +117,7 @@ def load_step_test(path: Path) -> StepTest:
     try:
         test = StepTest(**{**content, "file": path})
     except ValidationError as error:
-        raise explain(error, path, [name for name in StepTest.model_fields if name != "file"]) from None
+        raise explain(error, path, StepTest) from None
     if not test.expect and test.reference is None:
         raise BadInput("nothing is expected; write expect: or reference:", file=path)
     if test.step_ns < 1 or test.step > test.stop_time:

@@ -1,6 +1,6 @@
 """A study from its file: scenario, design, measures and limits, all checked."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +28,12 @@ def read_study(name: str, sets: Mapping[str, str], others: Iterable[str] = ()) -
     ``seed`` and ``runs`` (how many samples) are the study's own, every other key the scenario's; ``others`` are names
     of studies without a file.
     """
-    file = load_study(name, others)
+    file, path = load_study(name, others)
     further = {key: value for key, value in sets.items() if key not in ("seed", "runs")}
     seed = scalar(sets.get("seed", file.seed), SCENARIO_FIELDS["seed"], file="--set")
     runs = _with_samples(file.runs, scalar(sets["runs"], RUNS, file="--set")) if "runs" in sets else file.runs
-    return bind(file.model_copy(update={"seed": seed, "runs": runs, "set": {**file.set, **further}}))
+    changed = file.model_copy(update={"seed": seed, "runs": runs, "set": {**file.set, **further}})
+    return bind(changed, path, own=file.set.keys() - further.keys())
 
 
 RUNS = Variable("runs", int, Signal("1", "samples of a study", 1, MOST_RUNS), 1)
@@ -50,11 +51,17 @@ def _with_samples(runs: Runs, n: Any) -> Runs:
     return runs.model_copy(update=drawn)
 
 
-def bind(file: StudyFile) -> Study:
-    """Return the study that a file means. Raises ``BadInput``."""
+def bind(file: StudyFile, path: Path | None = None, own: Collection[str] = ()) -> Study:
+    """Return the study that a file means; ``own``: keys of its ``set`` that it contains itself. Raises ``BadInput``."""
     sets = [f"{key}={value}" for key, value in file.set.items()]
-    scenario = load_bound_scenario(file.scenario, sets, ImportedFmus()).scenario
-    design = make_design(file, scenario)
+    try:
+        scenario = load_bound_scenario(file.scenario, sets, ImportedFmus()).scenario
+    except BadInput as error:
+        text = str(error).removeprefix("--set: ")
+        if text != str(error) and text.partition(":")[0] in own:
+            raise BadInput(text, file=path, at=f"set.{text.partition(':')[0]}") from None
+        raise
+    design = make_design(file, scenario, path)
     content = file.model_dump(mode="json", by_alias=True)
     measures = {
         name: Measure(how, signal)  # type: ignore[arg-type]
@@ -62,7 +69,7 @@ def bind(file: StudyFile) -> Study:
         for how, signal in item.model_dump(exclude_none=True).items()
     }
     within = {
-        name: [Requirement(**item) for item in requirements_of(given, Path.cwd())]
+        name: [Requirement(**item) for item in requirements_of(given, Path.cwd(), path, f"within.{name}")]
         for name, given in file.within.items()
     }
     return Study(scenario, design, content, _seed_parameters(file.scenario, sets, design), measures, within)

@@ -6,6 +6,7 @@ two points is the parameter's and not luck. The last grid key, then the sample, 
 
 import itertools
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy.stats import qmc
 from modelkit.variables import Variable
 from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.inputs.scenario.scenario import LONGEST_STEP, Scenario
-from orchestrator.inputs.text.errors import BadInput
+from orchestrator.inputs.text.errors import BadInput, locate_errors
 from orchestrator.inputs.text.quantities import number, scalar
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.fields import Field, find_field
@@ -33,16 +34,26 @@ class _Column(NamedTuple):
     values: Array
 
 
-def make_design(study: StudyFile, scenario: Scenario) -> Design:
-    """Return the design of ``study``. Raises ``BadInput`` for an unknown key or a value out of range."""
+def make_design(study: StudyFile, scenario: Scenario, file: Path | None = None) -> Design:
+    """Return the design of ``study``, which stands in ``file``.
+
+    Raises ``BadInput`` for an unknown key or a value out of range.
+    """
     _check_size(study)
-    grid = [_grid_column(key, values, scenario) for key, values in study.runs.grid.items()]
+    grid = []
+    for key, given in study.runs.grid.items():
+        with locate_errors(file, f"runs.grid.{key}"):
+            grid.append(_grid_column(key, given, scenario))
     sampled: list[_Column] = []
     count = 1
-    for stream, samples in enumerate((study.runs.monte_carlo, study.runs.latin_hypercube)):
+    for stream, kind in enumerate(("monte_carlo", "latin_hypercube")):
+        samples = getattr(study.runs, kind)
         if samples is not None:
             count = samples.n
-            sampled += _sample_columns(samples, stream == 1, [study.seed, stream], scenario)
+            chances = _chances(samples, kind == "latin_hypercube", [study.seed, stream])
+            for (key, spread), column in zip(samples.spreads.items(), chances.T, strict=True):
+                with locate_errors(file, f"runs.{kind}.{key}"):
+                    sampled.append(_draw_column(key, spread, column, scenario))
     points = math.prod(len(column.values) for column in grid)
     columns = _cross_columns(grid, count) + [
         _Column(column.fields, np.tile(column.values, points)) for column in sampled
@@ -95,33 +106,33 @@ def _grid_column(key: str, values: list[Any] | Range, scenario: Scenario) -> _Co
     else:
         raw = values
     if not raw:
-        raise BadInput("an empty list of values", key=f"runs.grid: {key}")
+        raise BadInput("an empty list of values", key=key)
     return _Column(fields, np.array([_check_value(item, fields) for item in raw]))
 
 
-def _sample_columns(samples: Samples, latin: bool, seed: list[int], scenario: Scenario) -> list[_Column]:
-    rng = np.random.default_rng(seed)
-    size = len(samples.spreads)
-    if size == 0:
-        return []
-    chances = qmc.LatinHypercube(d=size, rng=rng).random(samples.n) if latin else rng.random((samples.n, size))
-    columns = []
-    for place, (key, spread) in enumerate(samples.spreads.items()):
-        fields = _fields(key, scenario)
-        drawn = _quantiles(chances[:, place], spread, fields[0].variable, key)
-        if spread.choice is None:
-            drawn = np.round(drawn) if fields[0].variable.kind is int else drawn
-            for end in (drawn.min(), drawn.max()):
-                _check_value(float(end), fields)
-        columns.append(_Column(fields, drawn))
-    return columns
+def _chances(samples: Samples, latin: bool, seed: list[int]) -> Array:
+    """Return numbers (n, parameters) in [0, 1)."""
+    rng, size = np.random.default_rng(seed), len(samples.spreads)
+    if latin and size:
+        return np.asarray(qmc.LatinHypercube(d=size, rng=rng).random(samples.n))
+    return rng.random((samples.n, size))
+
+
+def _draw_column(key: str, spread: Distribution, chances: Array, scenario: Scenario) -> _Column:
+    fields = _fields(key, scenario)
+    drawn = _quantiles(chances, spread, fields[0].variable, key)
+    if spread.choice is None:
+        drawn = np.round(drawn) if fields[0].variable.kind is int else drawn
+        for end in (drawn.min(), drawn.max()):
+            _check_value(float(end), fields)
+    return _Column(fields, drawn)
 
 
 def _quantiles(chances: Array, spread: Distribution, variable: Variable, key: str) -> Array:
     """Return the values of a distribution at ``chances`` in [0, 1)."""
     unit = variable.signal.unit
     if spread.choice is not None:
-        values = np.array([float(scalar(item, variable)) for item in spread.choice])
+        values = np.array([float(scalar(item, variable._replace(name=key))) for item in spread.choice])
         return values[np.floor(chances * len(values)).astype(np.intp)]
     if variable.kind is bool:
         raise BadInput("true or false: expected choice", key=key)

@@ -2,17 +2,16 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 
-from orchestrator.inputs.scenario.files import LIBRARY
+from orchestrator.inputs.scenario.files import LIBRARY, find_file
 from orchestrator.inputs.scenario.scenario import Name
-from orchestrator.inputs.text.errors import BadInput, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput
 from orchestrator.inputs.text.yaml_file import explain, read_mapping
 
 MOST_RUNS = 100_000_000
-SHIPPED_STUDIES = LIBRARY / "studies"
 
 
 class _StudyPart(BaseModel):
@@ -26,6 +25,19 @@ class Range(_StudyPart):
     last: float | str = Field(alias="to")
     steps: int = Field(ge=1, le=1_000_000)
     """Number of values."""
+
+    @model_validator(mode="after")
+    def _both_ends(self) -> "Range":
+        if self.steps == 1 and self.first != self.last:
+            raise BadInput("1 value is not both ends; expected 2 or more", key="steps")
+        return self
+
+
+Values = Annotated[
+    Annotated[list[Any], Tag("<list>")] | Annotated[Range, Tag("<range>")],
+    Discriminator(lambda value: "<range>" if isinstance(value, dict | Range) else "<list>"),
+]
+"""Values of a parameter of a grid."""
 
 
 class Distribution(_StudyPart):
@@ -49,7 +61,7 @@ class Samples(_StudyPart):
     """``n`` samples of some parameters: ``{n: 100, vehicle.start.y: {uniform: [-0.1, 0.1]}, ...}``."""
 
     n: int = Field(ge=1, le=MOST_RUNS)
-    spreads: dict[str, Distribution] = {}
+    spreads: dict[str, Distribution] = Field(default={}, validation_alias="<spreads>")
 
     @model_validator(mode="before")
     @classmethod
@@ -57,13 +69,13 @@ class Samples(_StudyPart):
         if not isinstance(data, dict) or "spreads" in data:
             return data
         number = {"n": data["n"]} if "n" in data else {}
-        return {**number, "spreads": {key: value for key, value in data.items() if key != "n"}}
+        return {**number, "<spreads>": {key: value for key, value in data.items() if key != "n"}}
 
 
 class Runs(_StudyPart):
     """Every grid point is run with every sample; samples of both kinds are joined side by side."""
 
-    grid: dict[str, list[Any] | Range] = {}
+    grid: dict[str, Values] = {}
     monte_carlo: Samples | None = None
     latin_hypercube: Samples | None = None
 
@@ -125,36 +137,19 @@ class StudyFile(_StudyPart):
     map: Axes | None = None
 
 
-def study_names() -> list[str]:
-    """Return the names of the shipped studies, sorted."""
-    return sorted(path.stem for path in SHIPPED_STUDIES.glob("*.yaml"))
-
-
-def load_study(name: str, others: Iterable[str] = ()) -> StudyFile:
-    """Return the study called ``name`` or written in the file ``name``.
+def load_study(name: str, others: Iterable[str] = ()) -> tuple[StudyFile, Path]:
+    """Return the study called ``name`` or written in the file ``name``, and that file.
 
     Raises ``BadInput``, which suggests names of ``others`` too.
     """
-    path = _find(name, [*study_names(), *others])
+    path = find_file(name, "studies", "study", Path(), others=others)
     content = read_mapping(path)
     content.setdefault("name", path.stem)
     try:
         study = StudyFile(**content)
     except ValidationError as error:
-        raise explain(error, path, list(StudyFile.model_fields)) from None
-    if study.scenario.endswith((".yaml", ".yml")):
-        return study.model_copy(update={"scenario": str((path.parent / study.scenario).resolve())})
-    return study
-
-
-def _find(name: str, known: list[str]) -> Path:
-    if name.endswith((".yaml", ".yml")) or "/" in name:
-        path = Path(name)
-        if not path.is_file():
-            raise BadInput("no such file", file=name)
-        return path
-    path = SHIPPED_STUDIES / f"{name}.yaml"
-    if not path.is_file():
-        hint = suggestion_or_choices(name, known)
-        raise BadInput(f"no study of this name{hint}", key=name)
-    return path
+        raise explain(error, path, StudyFile) from None
+    scenario = find_file(study.scenario, "scenarios", "scenario", path.parent, file=path, key="scenario")
+    if not scenario.is_relative_to(LIBRARY):
+        study = study.model_copy(update={"scenario": str(scenario)})
+    return study, path

@@ -7,7 +7,15 @@ from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.bodies.body import BodyState, motion_of, place, push_body, wheel_speed
 from vehicle_fmu.bodies.kinematic import KinematicInput, KinematicState, move, resting_at
 from vehicle_fmu.drive import change_speed, push_speed
-from vehicle_fmu.driver import DriverState, brakes, grabs, target_speed, watch
+from vehicle_fmu.driver import (
+    DriverState,
+    brakes,
+    follows_bend,
+    front_wheel_angle_along_bend,
+    grabs,
+    target_speed,
+    watch,
+)
 from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, attainable_speed, obey, press, shift, target_gear
 from vehicle_fmu.effort import Effort, mean_effort
 from vehicle_fmu.interface import Body, DriverParams, ManualInput, VehicleInput, VehicleParams
@@ -99,6 +107,10 @@ def _steer(state: CarState, inputs: VehicleInput, released: bool, params: Vehicl
     """Return the car with the request of whoever holds the wheel: driver, controller or nobody."""
     grabbed = grabs(state.time_ns, params.driver)
     held = params.driver.steering_override_angle if grabbed else state.steering_wheel_angle
+    if not (grabbed or inputs.steering_active or released) and follows_bend(state.driver, params.driver):
+        car = params.car
+        angle = front_wheel_angle_along_bend(state.pose, params.start, car.wheelbase, params.driver.road_curvature)
+        held = car.steering.ratio * angle
     passes = inputs.steering_active and not released and not grabbed
     request = inputs.steering_wheel_request if passes else held
     if params.steering.dead_time > 0.0:

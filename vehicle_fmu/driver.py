@@ -8,12 +8,14 @@ or grab the wheel, and may take over, which means: brake to standstill and hold 
 import math
 from typing import NamedTuple
 
-from modelkit.maths import TWO_PI
-from modelkit.vocabulary import Prompt
+from modelkit.maths import TWO_PI, wrap_angle
+from modelkit.vocabulary import Pose, Prompt
 from vehicle_fmu.interface import DriverParams
 
 CONFIRM_LASTS = 0.5
 """How long the confirm button is pressed [s]."""
+PREVIEW_DISTANCE = 3.0
+"""A driver who follows a bend takes back an error within about twice this distance [m]."""
 
 
 class DriverState(NamedTuple):
@@ -74,6 +76,29 @@ def grabs(time_ns: int, params: DriverParams) -> bool:
 def switch_is_on(time_ns: int, params: DriverParams) -> bool:
     """Return whether the parking assist's switch is on."""
     return params.apa_switch_time <= time_ns * 1e-9 < params.apa_switch_off_time
+
+
+def follows_bend(state: DriverState, params: DriverParams) -> bool:
+    """Return whether the driver steers along a bend as long as the wheel is his."""
+    return params.road_curvature != 0.0 and state.direction > 0 and not state.takeover
+
+
+def front_wheel_angle_along_bend(pose: Pose, start: Pose, wheelbase: float, curvature: float) -> float:
+    """Return the front-wheel angle [rad] that leads back to the arc of ``curvature`` [1/m] through ``start``.
+
+    The errors of place and heading against the arc die out, critically damped, over the preview distance.
+    """
+    cos = math.cos(start.heading)
+    sin = math.sin(start.heading)
+    x = (pose.x - start.x) * cos + (pose.y - start.y) * sin
+    y = (pose.y - start.y) * cos - (pose.x - start.x) * sin
+    to_centre_x = curvature * x
+    to_centre_y = 1.0 - curvature * y
+    distance = math.sqrt(to_centre_x * to_centre_x + to_centre_y * to_centre_y)
+    aside = (1.0 - distance) / curvature
+    turn = wrap_angle(pose.heading - start.heading - math.atan2(to_centre_x, to_centre_y))
+    wanted = curvature - 2.0 * turn / PREVIEW_DISTANCE - aside / (PREVIEW_DISTANCE * PREVIEW_DISTANCE)
+    return math.atan(wheelbase * wanted)
 
 
 def presses_confirm(state: DriverState, time_ns: int, params: DriverParams) -> bool:

@@ -175,6 +175,9 @@ class DriverParams(NamedTuple):
     steering_override_angle: Annotated[
         float, Signal("rad", "steering-wheel angle held by the override", -20.0, 20.0)
     ] = 0.0
+    road_curvature: Annotated[
+        float, Signal("1/m", "of the arc that the driver follows from the start; 0: holds the wheel", -0.1, 0.1)
+    ] = 0.0
     speed_error: Annotated[float, Signal("1", "relative speed error of the driver", -1.0, 5.0)] = 0.0
     speed_oscillation_amplitude: Annotated[
         float, Signal("m/s", "amplitude of the speed oscillation about the target speed", 0.0, 10.0)

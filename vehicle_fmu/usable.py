@@ -34,7 +34,8 @@ def is_usable(params: VehicleParams) -> bool:
 def _has_mass(params: VehicleParams) -> bool:
     return (
         _sizes(params.body_step)
-        and is_finite(params.road.grade + params.road.cross_slope)
+        and is_finite(params.road.grade + params.road.cross_slope + params.road.ramp.grade)
+        and is_finite(params.road.ramp.x + params.road.ramp.y + params.road.ramp.heading)
         and _is_chassis(params.chassis, params.car)
         and _drives(params.drive)
     )

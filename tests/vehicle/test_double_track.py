@@ -12,7 +12,7 @@ from modelkit.maths import clamp
 from modelkit.variables import flatten
 from modelkit.vocabulary import Pose
 from tests.vehicle.cars import CARS, double_track_car, multi_body_yaw_rate
-from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
+from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RampParams, RoadParams, Stance, gravity_in_car
 from vehicle_fmu.bodies.double_track import (
     DoubleTrackParams,
     DoubleTrackState,
@@ -92,6 +92,18 @@ def test_brake_holds_on_a_10_percent_slope_for_10_minutes(heading: float, angle:
             break  # creep at this speed, 1e-12 m/s and falling, is under a micrometre in 10 minutes
     moved = math.dist((start.x, start.y), (state.motion.pose.x, state.motion.pose.y))
     assert moved < 0.001
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_a_ramp_begins_at_its_line(heading: float) -> None:
+    """A car that rolls on the ramp does so as on a plane that rises as the ramp does; before it, as on the road."""
+    left = (-math.sin(heading), math.cos(heading))
+    ramp = RampParams(3.0, -1.0, heading, 0.12)
+    road = RoadParams(0.02, -0.01, ramp=ramp)
+    plane = RoadParams(0.02 + 0.12 * left[0], -0.01 + 0.12 * left[1])
+    for off, same in ((0.5, plane), (-0.5, RoadParams(0.02, -0.01))):
+        pose = Pose(3.0 + off * left[0], -1.0 + off * left[1], 0.4)
+        assert gravity_in_car(pose, road) == pytest.approx(gravity_in_car(pose, same))
 
 
 def _kinetic(state: DoubleTrackState) -> float:

@@ -164,6 +164,20 @@ def test_driver_errors() -> None:
     assert (min(speeds), max(speeds)) == pytest.approx((0.4, 0.6), abs=0.005)
 
 
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("curvature", [1.0 / 30.0, -1.0 / 15.0])
+def test_a_driver_follows_a_bend_until_the_controller_steers(body: int, curvature: float) -> None:
+    backlash = math.radians(5.0)
+    car = params(body=body, driver__road_curvature=curvature, steering__backlash=backlash, start__heading=0.3)
+    idle = VehicleInput(prompt=int(Prompt.FORWARD))
+    state, out = drive(car, idle, 30.0)
+    centre = (-math.sin(0.3) / curvature, math.cos(0.3) / curvature)
+    assert math.dist((out.pose.x, out.pose.y), centre) == pytest.approx(1.0 / abs(curvature), abs=0.03)
+    assert out.pose.heading == pytest.approx(0.3 + curvature * out.distance, abs=0.02)
+    _, steered = drive(car, prompted(Prompt.FORWARD, 2.0), 3.0, state)
+    assert steered.steering_wheel_angle == pytest.approx(2.0)
+
+
 def test_driver_brakes_and_grabs_the_wheel() -> None:
     car = params(driver__brake_time=2.0)
     assert drive(car, prompted(Prompt.FORWARD), 1.9)[1].brake_pedal == 0.0

@@ -34,8 +34,17 @@ class ChassisParams(NamedTuple):
     ] = 0.65
 
 
+class RampParams(NamedTuple):
+    """A second plane, such as a drive beside the road: on the left of a line its grade adds to the road's."""
+
+    x: Annotated[float, Signal("m", "x of a point on the line where the ramp begins", -1e8, 1e8)] = 0.0
+    y: Annotated[float, Signal("m", "y of a point on the line where the ramp begins", -1e8, 1e8)] = 0.0
+    heading: Annotated[float, Signal("rad", "direction of that line; the ramp is on its left", -100.0, 100.0)] = 0.0
+    grade: Annotated[float, Signal("1", "grade to the left of the line (rise over run); 0: no ramp", -1.0, 1.0)] = 0.0
+
+
 class RoadParams(NamedTuple):
-    """The road plane and its grip under each wheel."""
+    """The road plane, a ramp beside it, and the grip under each wheel."""
 
     grade: Annotated[float, Signal("1", "grade along the x axis of the world (rise over run)", -1.0, 1.0)] = 0.0
     cross_slope: Annotated[
@@ -49,6 +58,7 @@ class RoadParams(NamedTuple):
         ],
         ...,
     ] = (1.0, 1.0, 1.0, 1.0)
+    ramp: RampParams = RampParams()
 
 
 class Stance(NamedTuple):
@@ -94,13 +104,24 @@ class Gravity(NamedTuple):
     normal: float
 
 
-def gravity_in_car(heading: float, road: RoadParams) -> Gravity:
-    """Return gravity [m/s2] seen by a car of this heading on the plane z = grade x + cross_slope y."""
-    normal = GRAVITY_ACCELERATION / math.sqrt(1.0 + road.grade * road.grade + road.cross_slope * road.cross_slope)
-    east = -normal * road.grade
-    north = -normal * road.cross_slope
-    cos = math.cos(heading)
-    sin = math.sin(heading)
+def gravity_in_car(pose: Pose, road: RoadParams) -> Gravity:
+    """Return gravity [m/s2] seen by a car at ``pose`` on the plane z = grade x + cross_slope y, or on its ramp.
+
+    It is on the ramp when its rear axle's midpoint is.
+    """
+    grade = road.grade
+    cross_slope = road.cross_slope
+    if road.ramp.grade != 0.0:
+        left_x = -math.sin(road.ramp.heading)
+        left_y = math.cos(road.ramp.heading)
+        if (pose.x - road.ramp.x) * left_x + (pose.y - road.ramp.y) * left_y > 0.0:
+            grade = grade + road.ramp.grade * left_x
+            cross_slope = cross_slope + road.ramp.grade * left_y
+    normal = GRAVITY_ACCELERATION / math.sqrt(1.0 + grade * grade + cross_slope * cross_slope)
+    east = -normal * grade
+    north = -normal * cross_slope
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
     return Gravity(east * cos + north * sin, north * cos - east * sin, normal)
 
 

@@ -72,7 +72,7 @@ def wheel_angles(angle: float, wheelbase: float, track: float, ackermann: float)
 def resting(pose: Pose, angle: float, build: Build, p: DoubleTrackParams) -> DoubleTrackState:
     """Return the car at rest, its carcasses deflected so that they carry it on the slope."""
     mass = build.chassis.mass
-    gravity = gravity_in_car(pose.heading, build.road)
+    gravity = gravity_in_car(pose, build.road)
     felt = Felt(-gravity.x, -gravity.y)
     loads = wheel_loads(felt, gravity.normal, build.stance, (p.track_front, p.track_rear), build.chassis, p.roll)
     left, right = wheel_angles(angle, build.stance.wheelbase, p.track_front, p.ackermann)
@@ -103,7 +103,7 @@ def step_double_track(
     """Return the car ``h`` [s] later at front-wheel ``angle`` [rad] under ``effort``."""
     motion = state.motion
     chassis = build.chassis
-    gravity = gravity_in_car(motion.pose.heading, build.road)
+    gravity = gravity_in_car(motion.pose, build.road)
     loads = wheel_loads(state.felt, gravity.normal, build.stance, (p.track_front, p.track_rear), chassis, p.roll)
     corners = _corners(angle, effort, loads, build, p)
     wheels = tuple(_turn(wheel, at, motion, p.hub, p.tires, h) for wheel, at in zip(state.wheels, corners, strict=True))

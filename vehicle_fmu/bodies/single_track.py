@@ -149,7 +149,7 @@ def step_single_track(
     motion = state.motion
     stance, chassis, road = build
     wheelbase, b = stance
-    gravity = gravity_in_car(motion.pose.heading, road)
+    gravity = gravity_in_car(motion.pose, road)
     accel = state.forces.along / chassis.mass
     loads = axle_loads(accel, gravity.normal, stance, p, chassis)
     stiffness = axle_stiffness(loads, stance, p, chassis)

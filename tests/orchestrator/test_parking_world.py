@@ -37,7 +37,7 @@ def drawn(count: int = 200) -> dict[str, np.ndarray]:
 
 
 def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
-    f = drawn()
+    f = drawn() | {"bend": np.zeros(200)}
     found = parameters(f, np.arange(1, 201))
     along = np.where(f["kind"] == 0, f["length_b"], f["width_b"])
     first, second = (found[f"scene.boxes[{number}].x"] for number in ROWS["b"][:2])
@@ -51,7 +51,7 @@ def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
 
 
 def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
-    f = drawn()
+    f = drawn() | {"bend": np.zeros(200)}
     found = parameters(f, np.arange(1, 201))
     valid = is_valid(f | found)
     short = (f["kind"] == 0) & (f["overhang"] >= HITCH) & (f["overhang_length"] > f["extra"]) & (f["pillar"] != 2)
@@ -73,6 +73,15 @@ class DrawnScene(NamedTuple):
     end: float
     speed: float
     acceleration: float
+    curvature: float
+
+    def driver_at(self, travelled: float) -> Pose:
+        """The pose after ``travelled`` [m] on the arc that the driver follows."""
+        x, y, heading = self.start
+        turn = self.curvature * travelled
+        chord = travelled * np.sinc(0.5 * turn / np.pi)
+        along = heading + 0.5 * turn
+        return Pose(x + chord * math.cos(along), y + chord * math.sin(along), heading + turn)
 
     def boxes(self, time: float) -> dict[int, Box]:
         time_ns = round(time * 1e9)
@@ -104,6 +113,7 @@ def scenes() -> list[DrawnScene]:
             float(slot[row] + 12.0),
             float(found["vehicle.driver.profile[1].speed"][row]),
             float(found["vehicle.drive.acceleration_limit"][row]),
+            float(found["vehicle.driver.road_curvature"][row]),
         )
         for row in range(count)
     ]
@@ -121,11 +131,9 @@ def test_nothing_in_a_scene_overlaps(scenes: list[DrawnScene]) -> None:
 
 def test_nothing_stands_in_the_drivers_pass(scenes: list[DrawnScene]) -> None:
     for row, scene in enumerate(scenes):
-        x, y, heading = scene.start
         standing = scene.boxes(0.0)
-        for travelled in np.arange(0.0, scene.end - x, 0.25):
-            pose = Pose(x + travelled, y + travelled * math.tan(heading), heading)
-            car = outline(pose, *scene.car)
+        for travelled in np.arange(0.0, scene.end - scene.start.x, 0.25):
+            car = outline(scene.driver_at(travelled), *scene.car)
             assert not any(boxes_overlap(car, box) for box in standing.values()), (row, travelled)
 
 
@@ -134,13 +142,11 @@ def test_no_driver_meets_a_pedestrian(scenes: list[DrawnScene]) -> None:
     for row, scene in enumerate(scenes):
         for speed in {scene.speed, min(scene.speed, 10.0 / 3.6)}:
             for time in np.arange(0.0, 40.0, 0.1):
-                x = scene.start.x + max(speed * time - 0.5 * speed**2 / scene.acceleration, 0.0)
+                travelled = max(speed * time - 0.5 * speed**2 / scene.acceleration, 0.0)
                 there = scene.boxes(time)
-                if x < scene.end and FIRST_LEG in there:
-                    pose = Pose(
-                        x, scene.start.y + (x - scene.start.x) * math.tan(scene.start.heading), scene.start.heading
-                    )
-                    assert not boxes_overlap(outline(pose, *scene.car), there[FIRST_LEG]), (row, time)
+                if travelled < scene.end - scene.start.x and FIRST_LEG in there:
+                    car = outline(scene.driver_at(travelled), *scene.car)
+                    assert not boxes_overlap(car, there[FIRST_LEG]), (row, time)
 
 
 def test_pedestrians_turn_where_they_are(scenes: list[DrawnScene]) -> None:
@@ -149,10 +155,34 @@ def test_pedestrians_turn_where_they_are(scenes: list[DrawnScene]) -> None:
         first, second = scene.obstacles[FIRST_LEG], scene.obstacles[SECOND_LEG]
         if first.length > 0.0 and second.length > 0.0:
             turned += 1
-            assert first.y + first.speed_y * (first.disappear_at - first.moves_at) == pytest.approx(second.y)
-            assert second.x == first.x
+            walked = first.disappear_at - first.moves_at
+            corner = (first.x + first.speed_x * walked, first.y + first.speed_y * walked)
+            assert corner == pytest.approx((second.x, second.y))
             assert second.appear_at == first.disappear_at
     assert turned > 5
+
+
+@pytest.mark.parametrize("bend", [3.0, 4.0])
+def test_cars_in_a_bend_stand_along_its_arc(bend: float) -> None:
+    """Their fronts touch the circle about the bend's centre, which is in the row's distance from the slot's mouth."""
+    nominal = SPACE.values_by_name(SPACE.nominal()[None])
+    for kind, side, radius in itertools.product((0.0, 1.0), (0.0, 1.0), (30.0, 60.0)):
+        changed = {"kind": kind, "side": side, "bend": bend, "bend_radius": radius, "cars_a": 3.0, "cars_b": 3.0}
+        f = nominal | {name: np.array([value]) for name, value in changed.items()}
+        found = parameters(f, np.array([1]))
+        slot = float(found["slot.length" if kind == 0.0 else "slot.width"][0])
+        into = -1.0 if side == 0.0 else 1.0
+        sense = into if bend == 3.0 else -into
+        centre = (0.5 * slot, sense * radius * math.cos(math.asin(0.5 * slot / radius)))
+        for number in (1, 2, *ROWS["a"], *ROWS["b"]):
+            box = Obstacle(*(float(found.get(f"scene.boxes[{number}].{n}", {0: v})[0]) for n, v in EMPTY.items()))
+            depth = 0.5 * box.width
+            front = (box.x + into * depth * math.sin(box.heading), box.y - into * depth * math.cos(box.heading))
+            assert math.dist(front, centre) == pytest.approx(radius, abs=0.12), (number, kind)
+            tangent = math.atan((box.x - centre[0]) / (centre[1] - box.y))
+            assert box.heading == pytest.approx(tangent, abs=0.02), (number, kind)
+        driver = float(found["vehicle.driver.road_curvature"][0])
+        assert 1.0 / driver == pytest.approx(sense * (radius + (2.0 if bend == 3.0 else -2.0)), abs=1.0)
 
 
 def test_one_bay_is_a_slot_and_two_together_are_none() -> None:

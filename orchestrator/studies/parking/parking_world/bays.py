@@ -1,4 +1,4 @@
-"""Rows of bays with lines: cars stand in the middle of their bays, one to three bays between them are empty.
+"""Rows of bays with lines: cars stand in the middle of their bays, however turned; one to three between are empty.
 
 The ground truth is the lines: the vehicle is parked in one bay, whichever, and not along the road across several.
 """
@@ -33,8 +33,10 @@ def in_bays(f: F) -> NDArray[np.bool_]:
 
 
 def side_room(f: F, which: str) -> Array:
-    """Return the distance [m] from the face of neighbour ``which`` to the line beside it."""
-    return np.asarray(0.5 * (np.asarray(f["bay"]) - f[f"width_{which}"]))
+    """Return the distance [m] from neighbour ``which``'s nearest corner to the line beside it, negative beyond it."""
+    turn = np.radians(f[f"turn_{which}"])
+    half = 0.5 * (f[f"width_{which}"] * np.cos(turn) + f[f"length_{which}"] * np.abs(np.sin(turn)))
+    return np.asarray(0.5 * np.asarray(f["bay"]) - half)
 
 
 def with_bays(f: F) -> dict[str, Array]:
@@ -43,7 +45,7 @@ def with_bays(f: F) -> dict[str, Array]:
     length = count * f["bay"] + side_room(f, "a") + side_room(f, "b")
     shortest = np.array([shortest_slot(ParkingType.PERPENDICULAR, car, ISO) for car in CARS.values()])
     changed = {"extra": length - shortest[np.asarray(f["car"]).astype(int)], "pillar": 0.0 * length}
-    changed |= {f"gap_{which}": 2.0 * side_room(f, which) for which in "ab"}
+    changed |= {f"gap_{which}": f["bay"] - f[f"width_{which}"] for which in "ab"}
     changed["bin"] = np.where(count > 1.0, 0.0, f["bin"])
     return {**f, **{name: np.where(bays, value, f[name]) for name, value in changed.items()}}
 

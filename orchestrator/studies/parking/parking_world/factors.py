@@ -5,6 +5,8 @@ from orchestrator.studies.sweep.study.space import Factor
 
 NONE, HITCH, RACK = 0, 1, 2
 WALL, PARKED_CARS = 1, 2
+FIRST_BEND = 3
+"""Choices of the factor ``bend`` from this one on: the road bends."""
 NO_BAYS = 2
 """Choices of the factor ``bays`` up to this one: no bay lines; beyond it, the number of empty bays."""
 ROW = (
@@ -32,9 +34,17 @@ TURN = (
     Factor("person_turn", "1", 0, 0, 3, "before the slots a pedestrian goes", ("on", "on", "forwards", "backwards")),
     Factor("person_turn_at", "m", 0.6, 1.0, 2.0, "from the slots, where a pedestrian turns along the road"),
 )
-WIDER = {"person_speed": (0.5, 2.5), "slope": (-12.0, 12.0), "bank": (-12.0, 12.0), "kerb_height": (0.03, 0.2)}
+RAMP = Factor("ramp", "%", -12.0, 0.0, 12.0, "slope of a perpendicular slot, into it; double-track")
+BEND = (
+    Factor("bend", "1", 0, 0, 4, "the road bends, the slots are", ("none", "none", "none", "inside", "outside")),
+    Factor("bend_radius", "m", 30.0, 100.0, 100.0, "of the row along the bend"),
+)
+WIDER = {
+    **{"person_speed": (0.5, 2.5), "slope": (-12.0, 12.0), "bank": (-12.0, 12.0), "kerb_height": (0.03, 0.2)},
+    **{"length_a": (3.6, 5.4), "length_b": (3.6, 5.4)},
+}
 """Ranges of factors of ``apa-world``, by name."""
-OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN)
+OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN, RAMP, *BEND)
 
 
 def _widen(factor: Factor) -> Factor:

@@ -91,7 +91,7 @@ def is_valid(columns: Columns) -> NDArray[np.bool_]:
 
 FACTORS_OF_VALID = (
     *("kind", "car", "extra", "overhang", "overhang_length", "pillar", "bin"),
-    *("bays", "bay", "gap_a", "gap_b", "width_a", "width_b"),
+    *("bays", "bay", "gap_a", "gap_b", "width_a", "width_b", "length_a", "length_b", "turn_a", "turn_b"),
 )
 
 

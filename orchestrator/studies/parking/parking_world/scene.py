@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.parking.parking_world.bays import first_bay, with_bays
+from orchestrator.studies.parking.parking_world.bend import Moved, limit_in_bends, onto_bend
 from orchestrator.studies.parking.parking_world.driver_pass import (
     CLEAR_OF_PASS,
     LET_PASS,
@@ -22,7 +23,13 @@ from orchestrator.studies.parking.parking_world.driver_pass import (
     near_edge,
 )
 from orchestrator.studies.parking.parking_world.factors import NONE, PARKED_CARS, RACK, WALL
-from orchestrator.studies.parking.parking_world.pedestrian import HALF_ROOM, WalkingSpace, pedestrian_boxes
+from orchestrator.studies.parking.parking_world.pedestrian import (
+    FIRST_LEG,
+    HALF_ROOM,
+    SECOND_LEG,
+    WalkingSpace,
+    pedestrian_boxes,
+)
 from orchestrator.studies.parking.world import scene as world
 from orchestrator.studies.parking.world.factors import NO_SENSOR, NOBODY
 from orchestrator.studies.sweep.study.space import Seeds
@@ -52,7 +59,7 @@ MOVER_ROOM = 0.1
 
 def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     """Return what differs from run to run, by the names of a study's fields."""
-    f = with_bays(f)
+    f = limit_in_bends(with_bays(f))
     f = {**f, "depth": _depth(f)}
     found = world.parameters(f, seeds)
     parallel = f["kind"] == 0
@@ -70,7 +77,13 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
         for name, value in values.items():
             mirrored = sign if name in ("y", "speed_y") else 1.0
             found[f"scene.boxes[{box}].{name}"] = mirrored * value + 0.0 * slot
-    return found | _silent(f, found)
+    found |= {
+        "vehicle.road.ramp.y": sign * 0.5 * (f["stagger_a"] + f["stagger_b"]),
+        "vehicle.road.ramp.heading": np.where(f["side"] == 0, np.pi, 0.0),
+        "vehicle.road.ramp.grade": np.where(parallel, 0.0, 0.01 * (f["ramp"] + sign * f["bank"])),
+    }
+    moved = Moved((*ROWS["a"], *ROWS["b"]), (FIRST_LEG, SECOND_LEG), OVERHANG)
+    return onto_bend(f, found | _silent(f, found), seeds, moved)
 
 
 def _depth(f: F) -> Array:

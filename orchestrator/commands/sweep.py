@@ -40,6 +40,8 @@ A study names a scenario and the parameters to vary: grid, monte_carlo, latin_hy
 """
 MAX_OUTCOMES = 10
 """Rows of the table of outcomes that is printed; the page has twice as many."""
+COUNTS = ("runs", "drivers")
+"""Arguments of studies that are numbers of runs."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -152,9 +154,10 @@ def select_study(name: str, sets: list[str]) -> "Study":
     """Return the study that a word on the command line means, changed by ``KEY=VALUE``. Raises ``BadInput``."""
     from orchestrator.studies.sweep.study.read_study import read_study
 
-    pairs = dict(text.split("=", 1) for text in sets if "=" in text)
-    if len(pairs) != len(sets):
-        raise BadInput(f"{format_value(sets)}: expected KEY=VALUE", file="--set")
+    for text in sets:
+        if "=" not in text:
+            raise BadInput(f"{format_value(text)}: expected KEY=VALUE", file="--set")
+    pairs = dict(text.split("=", 1) for text in sets)
     if name not in STUDIES:
         return read_study(name, pairs, STUDIES)
     made: Study = importlib.import_module(STUDIES[name]).study(**_study_arguments(name, pairs))
@@ -170,17 +173,24 @@ def _study_arguments(name: str, pairs: dict[str, str]) -> dict[str, float]:
     for key in pairs:
         if key not in named and key not in factors:
             hint = suggestion_or_choices(key, [*named, *factors])
-            raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
+            place = f"--{key}" if key in ("runs", "seed") else f"--set: {key}"
+            raise BadInput(f"{name} has no such key{hint}", key=place)
     return {
-        key: _value_of_factor(factors[key], value) if key in factors else _whole(key, value)
+        key: _value_of_factor(factors[key], value) if key in factors else _argument(parameters[key], value)
         for key, value in pairs.items()
     }
 
 
-def _whole(key: str, value: str) -> int:
-    if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
-        raise BadInput(f"{format_value(value)} is not a whole number of at least 0", file="--set", key=key)
-    return int(value)
+def _argument(parameter: inspect.Parameter, text: str) -> float:
+    """Return the value of an argument of a study: a number of runs from 1, another number from 0, true or false."""
+    from modelkit.signal import Signal
+    from modelkit.variables import Variable
+    from orchestrator.inputs.text.quantities import MOST_WHOLE, scalar
+    from orchestrator.studies.sweep.study.study_file import MOST_RUNS
+
+    low, high = (1, MOST_RUNS) if parameter.name in COUNTS else (0, MOST_WHOLE - 1)
+    variable = Variable(parameter.name, parameter.annotation, Signal("1", "", low, high), parameter.default)
+    return scalar(text, variable, file="--set")
 
 
 def _value_of_factor(factor: "Factor", text: str) -> float:
@@ -194,9 +204,11 @@ def _value_of_factor(factor: "Factor", text: str) -> float:
     if not factor.choices:
         signal = Signal(factor.unit, factor.text, factor.low, factor.high)
         return float(scalar(text, Variable(factor.name, float, signal, factor.nominal), file="--set"))
-    if not (text.isascii() and text.isdigit() and int(text) < len(factor.choices)):
-        expected = f"expected 0 to {len(factor.choices) - 1}, one of {', '.join(factor.choices)}"
-        raise BadInput(f"{format_value(text)}: {expected}", file="--set", key=factor.name)
+    are_numbers = any(name.isdigit() for name in factor.choices)
+    if are_numbers or not (text.isascii() and text.isdigit() and int(text) < len(factor.choices)):
+        expected = f"expected one of {', '.join(dict.fromkeys(factor.choices))}"
+        places = "" if are_numbers else f", or 0 to {len(factor.choices) - 1}"
+        raise BadInput(f"{format_value(text)}: {expected}{places}", file="--set", key=factor.name)
     return float(text)
 
 

@@ -6,6 +6,7 @@ import os
 import shlex
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -65,11 +66,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="DIR", default=Path("runs/test"), help="output folder (runs/test)")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
-    parser.add_argument("-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run in parallel (1)")
+    parser.add_argument(
+        "-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run in parallel (1; 0: all cores)"
+    )
     parser.add_argument("--coverage", action="store_true", help="run in process and report coverage of charts and code")
     for what in ("transition", "branch"):
         parser.add_argument(
-            f"--min-{what}-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
+            f"--min-{what}-coverage", type=percentage, metavar="PERCENT", help="fail below this; means --coverage"
         )
     parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
 
@@ -93,6 +96,14 @@ def jobs(text: str) -> int:
     if not text.isdecimal() or int(text) > MOST_JOBS:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to {MOST_JOBS}")
     return int(text) or os.cpu_count() or 1
+
+
+def percentage(text: str) -> float:
+    """Return a number from 0 to 100."""
+    with suppress(ValueError):
+        if 0.0 <= float(text) <= 100.0:
+            return float(text)
+    raise argparse.ArgumentTypeError(f"{text!r} is not a number from 0 to 100")
 
 
 def _test_with_coverage(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:

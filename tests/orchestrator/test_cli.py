@@ -101,6 +101,7 @@ def test_help_and_version_import_no_command_and_no_library() -> None:
         (["run", DEMO, "more"], "usage: apa run ", "apa run: more: unknown"),
         (["export", "csw", "x"], "usage: apa export ", "argument FORMAT: csw: unknown; did you mean csv?"),
         (["export", "csv", "x", "--signal", "y", "--name"], "usage: apa export csv", "x: no such file"),
+        (["test", DEMO, "--min-branch-coverage", "200"], "usage: apa test ", "'200' is not a number from 0 to 100"),
         (["run", DEMO, "--fmus", "stone"], "usage: apa run ", "argument --fmus: stone: unknown; "),
     ],
 )

@@ -31,6 +31,8 @@ def test_the_plausible_range_is_within_the_hard_one_and_holds_the_default() -> N
         ("vehicle.start.x=5e5", "vehicle.start.x = 500000 m is beyond"),
         ("target.x=-2e4", "target.x = -20000 m is beyond"),
         ("slot.length=11 km", "slot.length = 11000 m is beyond"),
+        ("scene.boxes[3].x=1", "scene.boxes[3] has no length and is therefore not in the scene"),
+        ("scene.kerbs[1].x1=1", "scene.kerbs[1] has no height and is therefore not in the scene"),
         ("vehicle.driver.reaction_delay=100 ms", ""),
         ("faults=[{signal: vehicle.speed, kind: noise, sigma: 1e9}]", "faults[1].sigma = '1e9' is beyond"),
         ("faults=[{signal: vehicle.pose.x, kind: override, value: nan}]", ""),

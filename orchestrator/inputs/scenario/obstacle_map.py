@@ -44,7 +44,7 @@ def static_obstacles(scenario: Scenario) -> list[Points]:
 
 def _boxes(vehicle: Mapping[str, float]) -> Iterator[Points]:
     """Yield the corners of the boxes that neither come nor go nor move."""
-    for box in _items(vehicle, "scene.boxes"):
+    for box in items_of(vehicle, "scene.boxes").values():
         stays = not box.get("appear_at", 0.0) and box.get("disappear_at", NEVER_TIME) >= NEVER_TIME
         stays = stays and not box.get("speed_x", 0.0) and not box.get("speed_y", 0.0)
         if stays and box.get("length", 0.0) > 0.0:
@@ -60,16 +60,16 @@ def box_corners(box: Mapping[str, float]) -> Points:
 
 
 def _kerbs(vehicle: Mapping[str, float]) -> Iterator[Points]:
-    for kerb in _items(vehicle, "scene.kerbs"):
+    for kerb in items_of(vehicle, "scene.kerbs").values():
         if kerb.get("height", 0.0) > 0.0:
             yield [(kerb.get("x1", 0.0), kerb.get("y1", 0.0)), (kerb.get("x2", 0.0), kerb.get("y2", 0.0))]
 
 
-def _items(parameters: Mapping[str, float], array: str) -> Iterator[dict[str, float]]:
-    """Yield the fields of each element of an array of parameters that says anything, in order."""
+def items_of(parameters: Mapping[str, float], array: str) -> dict[int, dict[str, float]]:
+    """Return number -> fields of each element of an array of parameters that is given, in order."""
     found: dict[int, dict[str, float]] = {}
     for name, value in parameters.items():
         if name.startswith(f"{array}["):
             number, _, field = name[len(array) + 1 :].partition("].")
             found.setdefault(int(number), {})[field] = value
-    yield from (found[number] for number in sorted(found))
+    return dict(sorted(found.items()))

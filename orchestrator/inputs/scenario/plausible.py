@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from modelkit.variables import Variable, variables
 from orchestrator.inputs.scenario.models import MODELS
-from orchestrator.inputs.scenario.obstacle_map import static_obstacles
+from orchestrator.inputs.scenario.obstacle_map import items_of, static_obstacles
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput, format_value
 from orchestrator.inputs.text.quantities import number
@@ -50,7 +50,8 @@ def plausible(variable: Variable) -> tuple[float, float]:
 
 def implausible(scenario: Scenario) -> list[str]:
     """Return a sentence for each number of a scenario that is allowed but hardly meant."""
-    return [*_parameters(scenario), *_places(scenario), *_gaps(scenario), *_faults(scenario)]
+    checks = (_parameters, _places, _sizes, _gaps, _faults)
+    return [sentence for check in checks for sentence in check(scenario)]
 
 
 def is_implausible(value: float, variable: Variable) -> str:
@@ -83,6 +84,14 @@ def _places(scenario: Scenario) -> Iterator[str]:
                 yield _heading_sentence(f"{name}.{key}", value)
             elif unit and abs(value) > LARGEST[unit]:
                 yield _sentence(f"{name}.{key}", value, -LARGEST[unit], LARGEST[unit], unit)
+
+
+def _sizes(scenario: Scenario) -> Iterator[str]:
+    """Yield which parts of the scene lack the size without which they do not exist."""
+    for array, size in {"scene.boxes": "length", "scene.kerbs": "height"}.items():
+        for place, fields in items_of(scenario.vehicle, array).items():
+            if size not in fields:
+                yield f"{array}[{place}] has no {size} and is therefore not in the scene"
 
 
 def _gaps(scenario: Scenario) -> Iterator[str]:

@@ -51,20 +51,20 @@ OTHER_PATHS = ("guo2015-sine", "guo2015-polynomial", "guo2015-b-spline", "guo201
 OFF_OTHER_PATH = 0.01
 RATES = "Table 1's 30 deg/s and the poses of Fig. 12 cannot both hold; at 105 deg/s they do"
 ABOUT = "the speed is 'about 1.5 m/s'; case 4, the same drive until there, prints 3.59 s"
-WAVE = "the wave that the swing at the tangent point leaves has not died out on the 4 m behind it"
-FAST = "a wheel that fast brings the car back to within GB/T 41630; case 2 and Fig. 12 cannot both hold"
-SLOW = "at 30 deg/s the wheel swings for 0.79 m; the wave this leaves is not gone at the end of the path"
+WAVE = "the oscillation after the tangent point has not decayed within the remaining 4 m"
+FAST = "at this steering rate the vehicle ends within GB/T 41630; case 2 and Fig. 12 cannot both hold"
+SLOW = "at 30 deg/s the wheel turns for 0.79 m; the oscillation that follows has not decayed at the end of the path"
 NOTES = [
     "Both feedback signs of eq. (6) and the k3 term of eq. (14), (16), (17) are printed reversed; used corrected.",
     "The printed 3.59 s fits 0.79 s of turning the wheel at 30 deg/s before a start at full speed; "
-    "at 105 deg/s the wheel is set 0.56 s earlier, so times lie that much earlier.",
-    "Drivers who obey: 0.3 to 1.5 m/s, reaction 0 to 0.5 s, the controller assumes 0.3 s.",
-    "The paper shows no limit along the slot, and its case 5 stops short of Q3 too: what it calls a success is judged "
-    "without one. Our own outcome, which asks for 50 cm of Q3, stands beside it. Why cars stop short of Q3: the leg to "
-    "Q4 ends as soon as the pose is right, as case 5 prints it (straightened and done at 22.0 s, before Q4 is passed). "
-    "guo2015.threshold.park_longitudinal asks the car back to Q3 from there; its default leaves case 5 as printed.",
-    "Case 5 prints no speeds. Two are unknown and four numbers printed: its rows are at the pair of speeds that fits "
-    "best; the scenario's own (0.35, then 1.5 m/s) are reported.",
+    "at 105 deg/s turning takes 0.56 s less, and all times are earlier by that.",
+    "Compliant drivers: 0.3 to 1.5 m/s, reaction 0 to 0.5 s; the controller assumes 0.3 s.",
+    "The paper states no longitudinal limit, and its case 5 stops before Q3. Success as in the paper is therefore "
+    "evaluated without such a limit; the outcome of this project (within 50 cm of Q3) is listed beside it. Vehicles "
+    "stop before Q3 because the drive to Q4 ends as soon as the heading is right, as printed for case 5 (done at "
+    "22.0 s, before Q4). guo2015.threshold.park_longitudinal prompts the vehicle back to Q3; its default keeps case 5.",
+    "The paper prints no speeds of case 5. Its rows use the two speeds that fit the four printed numbers best; those "
+    "of the scenario (0.35, then 1.5 m/s) are listed.",
 ]
 
 

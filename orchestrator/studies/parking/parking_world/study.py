@@ -41,10 +41,10 @@ KERB_NEAREST, KERB_FARTHEST = 0.05, 0.35
 """GB/T 41630, between tyres and kerb [m]."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0, **fixed: float) -> Study:
+def study(runs: int = 2000, seed: int = 1, mild: bool = False, **fixed: float) -> Study:
     """Return the study: ``runs`` rows drawn from ``seed``.
 
-    ``mild``: 1 for half the ranges; ``fixed``: factors that have one value in all runs.
+    ``mild``: half the ranges; ``fixed``: factors that have one value in all runs.
     """
     space = Space([factor.mild() for factor in FACTORS] if mild else FACTORS, _stack)
     shares = space.with_fixed(np.random.default_rng([seed, 2]).random((runs, len(FACTORS))), fixed)

@@ -45,8 +45,8 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0, row_cars: int = 0) -> Study:
-    """Return the world; ``mild``: 1 for half the ranges; ``row_cars``: so many cars beyond each neighbour."""
+def study(runs: int = 2000, seed: int = 1, mild: bool = False, row_cars: int = 0) -> Study:
+    """Return the world; ``mild``: half the ranges; ``row_cars``: so many cars beyond each neighbour."""
     if row_cars > MAX_ROW_CARS:
         raise BadInput(f"{row_cars} is more than {MAX_ROW_CARS}: the scene has no more boxes", key="row_cars")
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS), row_cars)

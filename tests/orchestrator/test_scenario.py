@@ -152,6 +152,7 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
         ("requirements: [projekt]", r"mine\.yaml:1: requirements: projekt: no set of requirements of this name"),
         ("seed: 1\ncar: tesla", r"mine\.yaml:2: car: tesla: no car of this name"),
         ("seed: 1\ncar: {extends: tesla}", r"mine\.yaml:2: car: tesla: no car of this name"),
+        ("seed: 1\nsystem: {componets: {}}", r"mine\.yaml:2: system\.componets: unknown; did you mean components"),
         ("name: straße", "'straße': expected letters and digits without accents"),
         ("stop_time: .nan", r"mine\.yaml:1: stop_time: nan: expected a finite number"),
         ("faults: [{signal: vehicle.odometry, knid: delay}]", r"faults\[1\]\.knid: unknown; did you mean kind\?"),

@@ -97,11 +97,11 @@ def test_further_boxes_stand_behind_the_generated_ones(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("sets", "message"),
     [
-        (["slot_layout.lenght=5"], r"slot_layout: lenght: unknown; did you mean length\?"),
+        (["slot_layout.lenght=5"], r"slot_layout\.lenght: unknown; did you mean length\?"),
         (["slot_layout.row=9"], "slot_layout: 20 boxes with those of the row, the scene holds 16"),
         (["slot_layout.kind=angled"], "slot_layout: angle: is given for kind: angled, and only there"),
         (["slot_layout.kind=angled", "slot_layout.angle=10 deg"], "10 deg is out of range, expected 30 to 150 deg"),
-        (["slot_layout.length=-1"], "slot_layout: length: -1"),
+        (["slot_layout.length=-1"], "slot_layout.length: -1"),
         (["slot_layout=5"], "slot_layout: expected a mapping"),
     ],
 )

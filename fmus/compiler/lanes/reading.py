@@ -25,7 +25,6 @@ PROLOGUE = """
 typedef int int32_t; typedef int int16_t; typedef int int8_t; typedef long int64_t; typedef unsigned long uint64_t;
 typedef int bool; enum { false, true };
 """
-NAN_WORDS = ("NAN", "INFINITY")
 
 
 class Declarations:

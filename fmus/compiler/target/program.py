@@ -79,7 +79,6 @@ class Program:
         self.signatures: dict[FunctionType, Any] = {}
         self.in_place: dict[FunctionType, Any] = {}
         self.caller: Any = None
-        self.checked: set[Any] = set()
         self.writers = Writers(self.library, self.bindings_of)
         self.writing: set[str] = set()
         """C functions that write to a store."""

@@ -93,7 +93,7 @@ def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
     try:
         return SystemText.model_validate(merged["system"])
     except ValidationError as error:
-        raise explain(error, f"{path}: system", SystemText) from None
+        raise explain(error, path, SystemText, section="system") from None
 
 
 def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]]:

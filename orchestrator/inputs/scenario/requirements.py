@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from orchestrator.inputs.scenario.files import LIBRARY
-from orchestrator.inputs.text.errors import BadInput, format_value, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, format_value
 from orchestrator.inputs.text.quantities import Seconds, parse_quantity
 from orchestrator.inputs.text.yaml_file import explain, place_in, read_yaml
 
@@ -145,11 +145,8 @@ class Requirement(ConditionLimit):
             raise BadInput(
                 f"{format_value(data)}: expected the name of a set of limits or a mapping with id, signal, max, source"
             )
-        for key in data:
-            if key not in cls.model_fields:
-                hint = suggestion_or_choices(str(key), cls.model_fields)
-                raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
-        return {**data, **_limit(data, _condition_of(data))}
+        has_unknown_key = not data.keys() <= cls.model_fields.keys()
+        return data if has_unknown_key else {**data, **_limit(data, _condition_of(data))}
 
 
 @cache

@@ -163,8 +163,7 @@ def layout_of(layers: Iterable[tuple[dict[str, Any], object]]) -> SlotLayout | N
     try:
         return SlotLayout.model_validate(merged)
     except ValidationError as error:
-        wrong = explain(error, None, SlotLayout)
-        raise BadInput(f"{wrong}", file=last, key=KEY) from None
+        raise explain(error, last, SlotLayout, section=KEY) from None
 
 
 def _nest(name: str, value: object) -> dict[str, Any]:

@@ -225,14 +225,18 @@ def read_mapping(path: Path) -> dict[str, Any]:
 
 
 def explain(
-    error: ValidationError, file: object, model: type[BaseModel], known: Iterable[str] | None = None
+    error: ValidationError,
+    file: object,
+    model: type[BaseModel],
+    known: Iterable[str] | None = None,
+    section: str = "",
 ) -> BadInput:
     """Return pydantic's first complaint of a ``model`` as one sentence: file, key, value and what would be right.
 
-    ``known``: the keys of the model, where they are not its fields.
+    ``known``: the keys of the model, where they are not its fields. ``section``: the key that the model stands under.
     """
     first = _first(error)
-    key = place_in(error)
+    key = f"{section}.{place_in(error)}".strip(".")
     value = first.get("input")
     if first["type"] == "extra_forbidden":
         is_nested = known is None or len(first["loc"]) > 1

@@ -108,7 +108,8 @@ def _line(term: Term, is_input: bool, place: SignalPlace) -> str:
         return f"write {minus}{term.name} alone, which is converted, and a unit beside a signal that has none"
     other = place.other if place.other.endswith("]") else f"{place.other} [{term.unit}]"
     ends = (term.name, other) if is_input else (other, minus + term.name)
-    return f"a unit stands beside a signal whose FMU says none: write '{ends[0]}: {ends[1]}', or both without a unit"
+    advice = f"write '{ends[0]}: {ends[1]}', or no unit if both FMUs declare theirs"
+    return f"a unit belongs beside a signal whose FMU declares none: {advice}"
 
 
 def declare_units(instance: FmuInstance, written: Mapping[str, str], file: object) -> None:

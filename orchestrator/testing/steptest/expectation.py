@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from orchestrator.inputs.scenario.requirements import Condition
-from orchestrator.inputs.text.errors import BadInput, format_value, suggestion_or_choices
+from orchestrator.inputs.text.errors import BadInput, format_value
 from orchestrator.testing.steptest.response import RESPONSES
 
 Number = float | str | bool
@@ -15,18 +15,6 @@ OPERATORS = ("always", "eventually", "until", "response")
 
 class _StepTestPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _check_keys(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            return data
-        known = {item.alias or name: item for name, item in cls.model_fields.items()}
-        for key in data:
-            if key not in known:
-                hint = suggestion_or_choices(str(key), known)
-                raise BadInput(f"unknown{hint}", key=str(key))
-        return data
 
 
 class Limit(_StepTestPart):

@@ -1,8 +1,8 @@
 """What stands around the car: boxes and kerb lines, and how near the car's outline is to them.
 
-A box may appear and disappear at given times, and move straight on between two more. A kerb lower
-than the ground clearance stops the wheels but passes under the bumpers: clearance to it is measured
-from the part of the outline between the tyres' outer ends.
+A box may appear and disappear at given times, and move straight on between two more. A kerb or box
+lower than the ground clearance stops the wheels but passes under the bumpers: clearance to it is
+measured from the part of the outline between the tyres' outer ends.
 """
 
 import math
@@ -48,6 +48,7 @@ class Obstacle(NamedTuple):
     speed_y: Annotated[float, Signal("m/s", "speed along y while it moves", -50.0, 50.0)] = 0.0
     moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, NEVER_TIME)] = 0.0
     halts_at: Annotated[float, Signal("s", "stops at this time; 1e9: never", 0.0, NEVER_TIME)] = NEVER_TIME
+    height: Annotated[float, Signal("m", "height", 0.0, 100.0, HOUSE)] = 2.0
 
 
 class Kerb(NamedTuple):
@@ -65,9 +66,9 @@ class SceneParams(NamedTuple):
 
     boxes: tuple[Obstacle, ...] = (Obstacle(),) * 16
     kerbs: tuple[Kerb, ...] = (Kerb(),) * 4
-    ground_clearance: Annotated[float, Signal("m", "kerbs lower than this pass under the bumpers", 0.0, 1.0, HOUSE)] = (
-        0.15
-    )
+    ground_clearance: Annotated[
+        float, Signal("m", "kerbs and boxes lower than this pass under the bumpers", 0.0, 1.0, HOUSE)
+    ] = 0.15
     tyre_reach: Annotated[
         float, Signal("m", "tyres reach this far beyond the axles, as high as a kerb is", 0.0, 1.0, HOUSE)
     ] = 0.3
@@ -95,22 +96,22 @@ def clearance(
 ) -> float:
     """Return the distance [m] from the car to the nearest thing; ``limit`` if none is nearer.
 
-    In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb lower than ``kerb_height``
-    is no contact: it gives 0.
+    In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb or box lower than
+    ``kerb_height`` is no contact: it gives 0.
     """
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     body = outline_box(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
+    between_tyres = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
     nearest = limit
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             box = obstacle_box(obstacle, time_ns)
-            if nearest <= 0.0 or centre_gap(body, box) < nearest:
-                nearest = nearest_of(nearest, body, orient(box), True)
+            part = between_tyres if obstacle.height < scene.ground_clearance else body
+            if nearest <= 0.0 or centre_gap(part, box) < nearest:
+                nearest = nearest_of(nearest, part, orient(box), obstacle.height >= kerb_height)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
-            part = body
-            if kerb.height < scene.ground_clearance:
-                part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
+            part = between_tyres if kerb.height < scene.ground_clearance else body
             line = orient_line(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
             nearest = nearest_of(nearest, part, line, kerb.height >= kerb_height)
     return nearest

@@ -37,7 +37,9 @@ class UltrasonicParams(NamedTuple):
     dropout: Annotated[float, Signal("1", "probability that a measurement is lost", 0.0, 1.0, HOUSE), Role.TUNABLE] = (
         0.0
     )
-    kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not detected", 0.0, 10.0, HOUSE)] = 0.08
+    kerb_height: Annotated[float, Signal("m", "kerbs and boxes lower than this are not detected", 0.0, 10.0, HOUSE)] = (
+        0.08
+    )
     seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
 
 
@@ -95,7 +97,7 @@ def range_measurements(
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     side = Point(math.sin(sensors.half_angle), math.cos(sensors.half_angle))
     for obstacle in scene.boxes:
-        if is_there(obstacle, time_ns):
+        if is_there(obstacle, time_ns) and obstacle.height >= kerb_height:
             distances = _hear(distances, pose, ahead, sensors, side, obstacle_box(obstacle, time_ns))
     for kerb in scene.kerbs:
         if kerb.height > 0.0 and kerb.height >= kerb_height:

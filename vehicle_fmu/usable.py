@@ -115,7 +115,7 @@ def _stands(p: SceneParams) -> bool:
     total = p.ground_clearance + p.tyre_reach
     for box in p.boxes:
         total = total + box.x + box.y + box.heading + box.length + box.width
-        total = total + box.speed_x + box.speed_y + box.moves_at + box.halts_at
+        total = total + box.speed_x + box.speed_y + box.moves_at + box.halts_at + box.height
     for kerb in p.kerbs:
         total = total + kerb.x1 + kerb.y1 + kerb.x2 + kerb.y2 + kerb.height
     return is_finite(total)

@@ -31,6 +31,7 @@ from tests.native_runs import drive_natively
 from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 
 BOX = "{x: -4, y: -1.5, length: 1, width: 1}"
+LOW_BOX = "{x: -4, y: -1.5, length: 1, width: 1, height: 0.1}"
 STRIP = "{x: -4, y: -1.5, length: 1, width: 1, appear_at: 2, disappear_at: 12}"
 MOVING = "{x: -4, y: 20, length: 1, width: 1, speed_y: -2, moves_at: 0, halts_at: 10.75}"
 KERB = "{x1: -4, y1: -3, x2: -4, y2: 3, height: 0.1}"
@@ -83,7 +84,7 @@ def test_anything_of_the_scene_is_contact(things: str) -> None:
 def test_a_wheel_at_a_low_kerb_is_reported() -> None:
     _, summary = driven(through("requirements=[]", things=f"scene.kerbs=[{LOW_KERB}]"))
     assert (summary.outcome, summary.penetration) == ("parked", 0.0)
-    assert "kerb lower than" in summary.notes[0]
+    assert "kerb or box lower than" in summary.notes[0]
 
 
 def test_a_requirement_of_the_same_name_or_metric_does_not_take_its_place() -> None:
@@ -240,7 +241,8 @@ def test_which_end_of_the_slot_is_passed(turn: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "things", [f"scene.boxes=[{STRIP}, {BOX}]", f"scene.boxes=[{MOVING}]", f"scene.kerbs=[{KERB}]"]
+    "things",
+    [f"scene.boxes=[{STRIP}, {BOX}]", f"scene.boxes=[{LOW_BOX}]", f"scene.boxes=[{MOVING}]", f"scene.kerbs=[{KERB}]"],
 )
 def test_clearance_by_poses_is_the_one_that_the_vehicle_puts_out(things: str) -> None:
     recording, _ = driven(through("requirements=[]", things=things))

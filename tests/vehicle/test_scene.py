@@ -75,6 +75,17 @@ def test_a_low_kerb_passes_under_the_bumper_but_not_under_the_wheels() -> None:
     assert clearance(Pose(), Car(), SceneParams(kerbs=(high, *(Kerb(),) * 3)), 0.08, 0) < 0.0
 
 
+def test_a_low_box_passes_under_the_bumper_but_not_under_the_wheels() -> None:
+    """And one that the sensors cannot detect stops a wheel without contact."""
+    ahead = Obstacle(3.1, 0.0, 0.0, 0.2, 4.0, height=0.10)
+    others = (Obstacle(),) * 15
+    assert clearance(Pose(), Car(), SceneParams((ahead, *others)), 0.08, 0) == pytest.approx(3.0 - 2.405 - 0.3)
+    assert clearance(Pose(), Car(), SceneParams((ahead._replace(height=0.3), *others)), 0.08, 0) < 0.0
+    below = ahead._replace(x=2.5, height=0.07)
+    assert clearance(Pose(), Car(), SceneParams((below, *others)), 0.08, 0) == 0.0
+    assert clearance(Pose(), Car(), SceneParams((below, *others)), 0.05, 0) < 0.0
+
+
 def test_things_appear_and_disappear() -> None:
     walker = Obstacle(5.0, 0.0, 0.0, 0.4, 0.4, 2.0, 3.0)
     scene = SceneParams((walker, *(Obstacle(),) * 15))
@@ -155,6 +166,8 @@ def test_noise_has_its_deviation_dropout_its_rate_and_the_seed_repeats() -> None
 def test_low_kerbs_are_not_heard() -> None:
     for height, seen in ((0.05, False), (0.12, True)):
         scene = SceneParams(kerbs=(Kerb(4.0, -3.0, 4.0, 3.0, height), *(Kerb(),) * 3))
+        assert (first_readings(Pose(), scene, EXACT, CLEAN).readings[1] < 5.0) is seen
+        scene = SceneParams((Obstacle(4.1, 0.0, 0.0, 0.2, 6.0, height=height), *(Obstacle(),) * 15))
         assert (first_readings(Pose(), scene, EXACT, CLEAN).readings[1] < 5.0) is seen
 
 

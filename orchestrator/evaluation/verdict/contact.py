@@ -5,6 +5,7 @@ put out none: there the true outline is held against the true scene, at every po
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
@@ -22,7 +23,7 @@ from orchestrator.simulation.cosim.recording import Recording
 
 CLEARANCE, SPEED, VEHICLE = "vehicle.clearance", "vehicle.speed", "vehicle"
 POSE = ("vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading")
-SIZES = ("length", "height")
+SIZE = re.compile(r"scene\.(boxes\[\d+\]\.length|kerbs\[\d+\]\.height)")
 """Fields of a thing of the scene that are 0 where there is none: of boxes, of kerbs."""
 
 
@@ -41,10 +42,7 @@ class FirstContact(NamedTuple):
 
 def has_scene(vehicle: Mapping[str, float]) -> bool:
     """Return whether there is anything in the scene that the parameters ``vehicle`` describe."""
-    return any(
-        value > 0.0 and name.startswith("scene.") and name.rpartition(".")[2] in SIZES
-        for name, value in vehicle.items()
-    )
+    return any(value > 0.0 and SIZE.fullmatch(name) for name, value in vehicle.items())
 
 
 class Clearances(NamedTuple):
@@ -152,17 +150,21 @@ def _at_poses(poses: Array, t: Array, given: Mapping[str, float]) -> Array:
     parameters = {**_defaults(), **given}
     car, reach = CarOutline.of(parameters), parameters["scene.tyre_reach"]
     low = CarOutline(car.wheelbase + reach, reach, car.half_width, car.wheelbase)
+    detected = parameters["ultrasonic.kerb_height"]
+
+    def part_at(height: float) -> CarOutline:
+        return low if height < parameters["scene.ground_clearance"] else car
+
     found = np.where(np.isfinite(poses).all(axis=1), NO_HIT, np.nan)
     for box in moving_boxes(parameters):
         rows = np.flatnonzero((box.appear_at <= t) & (t < box.disappear_at))
         moved = np.maximum(0.0, np.minimum(t[rows], box.halts_at) - box.moves_at)
         seen = poses[rows] - np.column_stack([box.speed_x * moved, box.speed_y * moved, np.zeros(len(rows))])
-        found[rows] = np.minimum(found[rows], polygon_clearances(seen, [box.outline()[:4].tolist()], car))
+        near = polygon_clearances(seen, [box.outline()[:4].tolist()], part_at(box.height))
+        found[rows] = np.minimum(found[rows], near if box.height >= detected else np.maximum(near, 0.0))
     for kerb in kerbs(parameters):
-        part = low if kerb.height < parameters["scene.ground_clearance"] else car
-        near = polygon_clearances(poses, [[(kerb.x1, kerb.y1), (kerb.x2, kerb.y2)]], part)
-        counts = kerb.height >= parameters["ultrasonic.kerb_height"]
-        found = np.minimum(found, near if counts else np.maximum(near, 0.0))
+        near = polygon_clearances(poses, [[(kerb.x1, kerb.y1), (kerb.x2, kerb.y2)]], part_at(kerb.height))
+        found = np.minimum(found, near if kerb.height >= detected else np.maximum(near, 0.0))
     return found
 
 

@@ -76,6 +76,8 @@ class Box(NamedTuple):
     speed_y: float = 0.0
     moves_at: float = 0.0
     halts_at: float = 1e9
+    height: float = 2.0
+    """[m]"""
 
     @property
     def comes_or_goes(self) -> bool:

@@ -338,7 +338,7 @@ def _contact(recording: Recording, scenario: Scenario, numbers: dict[str, float]
             f"in {touched.samples} samples"
         )
     if math.isfinite(low):
-        said.append(f"a wheel is at a kerb lower than vehicle.ultrasonic.kerb_height, first at {low:.2f} s")
+        said.append(f"a wheel is at a kerb or box lower than vehicle.ultrasonic.kerb_height, first at {low:.2f} s")
     return said
 
 

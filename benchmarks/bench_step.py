@@ -1,8 +1,8 @@
 """Cost of one co-simulation step of the pair, all signals exchanged, in every way we can drive it; side by side.
 
 Case 4 with its step of 10 ms, run to the same number of steps each time, in turn; medians. The limit is the
-same exchange and the same machine code without any FMI between. Last, whole runs: case 4 up to its end,
-recorded and written to a log, from initialization on.
+same machine code without any FMI between, and hands over connected signals only. Last, whole runs: case 4 up to
+its end, recorded and written to a log, from initialization on.
 """
 
 import statistics

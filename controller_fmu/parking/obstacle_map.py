@@ -20,8 +20,7 @@ from controller_fmu.parking.geometry.polygons import (
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
-from controller_fmu.parking.measurement.predicted_range import range_to_polygons
-from controller_fmu.parking.measurement.sensor import MAX_SENSORS, SensorPose
+from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.collision_monitor import (
     EchoObstacle,
     landmark_distance,
@@ -29,14 +28,11 @@ from controller_fmu.parking.monitor.collision_monitor import (
     side_end,
     side_start,
 )
-from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 LANDMARK_VERTICES = 2 * MAX_LANDMARKS
-MAX_REMEMBERED = 8
-"""Unexplained echoes that are kept for planning."""
 ROW_EXTENSION = 10.0
 """The row and the road go on for this far [m], and what ends them is so thick."""
 BEHIND_VEHICLE = 0.6
@@ -44,7 +40,7 @@ BEHIND_VEHICLE = 0.6
 SLOT_QUADS = 7
 """Rectangles about a slot: neighbours, what is behind it, row and road."""
 QUAD_VERTICES = 4 * SLOT_QUADS
-ECHO_VERTICES = 4 * (MAX_REMEMBERED + MAX_SENSORS)
+ECHO_VERTICES = 4 * MAX_SENSORS
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
 START_CLEARANCE = 0.05
@@ -202,28 +198,3 @@ def _slot_quads(slot: SlotCandidate, outline: VehicleOutline, road: Point) -> tu
         Quad(first - ROW_EXTENSION, far, last + ROW_EXTENSION, road.y, slot.row.slope, road.x),
         Quad(road.x, road.y, road.x + ROW_EXTENSION, min(a.front, b.front)),
     )
-
-
-def without_explained(
-    echo: EchoObstacle, obstacles: ObstacleMap, half_angle: float, params: MonitorParams
-) -> EchoObstacle:
-    """Return a remembered echo, or none if ``obstacles`` in its cone (``half_angle`` [rad]) explain it by now.
-
-    Its point on the sensor's axis is only one of the arc that it may have come from.
-    """
-    if not echo.is_present:
-        return echo
-    x = echo.x - echo.range * echo.ux
-    y = echo.y - echo.range * echo.uy
-    sensor = SensorPose(x, y, echo.ux, echo.uy, math.cos(half_angle), math.sin(half_angle))
-    reach = echo.range + params.unexplained
-    return EchoObstacle() if range_to_polygons(sensor, obstacles.vertices, reach).distance < reach else echo
-
-
-def remember_echoes(before: tuple[EchoObstacle, ...], echoes: tuple[EchoObstacle, ...]) -> tuple[EchoObstacle, ...]:
-    """Return the remembered echoes with those present now; the oldest are forgotten."""
-    after = before
-    for echo in echoes:
-        if echo.is_present and echo.is_unexplained:
-            after = after[1:] + (echo,)
-    return after

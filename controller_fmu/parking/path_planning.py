@@ -14,7 +14,6 @@ from controller_fmu.parking.geometry.polygons import ObstacleMap
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.visibility import predict_range
 from controller_fmu.parking.measurement.cycle import seconds
-from controller_fmu.parking.measurement.predicted_range import predict_range_to_point
 from controller_fmu.parking.measurement.sensor import (
     MAX_SENSORS,
     ReadingStatus,
@@ -29,7 +28,6 @@ from controller_fmu.parking.obstacle_map import (
     is_on_map,
     obstacle_map,
     with_echoes,
-    without_explained,
 )
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.gear_segments import without_short_end
@@ -79,9 +77,9 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
 
 
 def obstacle_count(memory: ParkingMemory) -> int:
-    """Return how many landmarks and remembered echoes there are."""
+    """Return how many landmarks and echoes there are."""
     landmarks = sum(1 if item.type != LandmarkType.NONE else 0 for item in memory.perception.local_map.landmarks)
-    return landmarks + sum(1 if echo.is_present else 0 for echo in memory.perception.remembered)
+    return landmarks + sum(1 if echo.is_present else 0 for echo in memory.perception.echoes)
 
 
 def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -92,9 +90,8 @@ def forget_what_left(memory: ParkingMemory, inputs: ParkingSystemInput, params: 
     if not memory.perception.cycle.is_new:
         return memory
     views = tuple(_view_at_rest(number, memory, inputs, params) for number in range(MAX_SENSORS))
-    remembered = tuple(_still_there(echo, views) for echo in memory.perception.remembered)
     echoes = tuple(_without_passed(memory.perception.echoes[number], views[number]) for number in range(MAX_SENSORS))
-    memory = memory._replace(perception=memory.perception._replace(remembered=remembered, echoes=echoes))
+    memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
     landmarks = tuple(_contradict_at_rest(item, views, params) for item in memory.perception.local_map.landmarks)
     return with_landmarks(memory, landmarks)
 
@@ -120,12 +117,6 @@ def _without_passed(echo: EchoObstacle, view: ViewAtRest) -> EchoObstacle:
     """Return the echo of a sensor unless it measures through its place now."""
     is_passed = echo.is_present and planar_distance(echo.x, echo.y, view.sensor.x, view.sensor.y) < view.limit
     return EchoObstacle() if is_passed else echo
-
-
-def _still_there(echo: EchoObstacle, views: tuple[ViewAtRest, ...]) -> EchoObstacle:
-    """Return an echo unless a sensor measures through it."""
-    is_gone = any(predict_range_to_point(view.sensor, echo.x, echo.y).distance < view.limit for view in views)
-    return EchoObstacle() if is_gone else echo
 
 
 def _contradict_at_rest(landmark: Landmark, views: tuple[ViewAtRest, ...], params: ParkingParams) -> Landmark:
@@ -169,7 +160,7 @@ def continue_plan(
     elif plan.request.run_in != 0.0:
         return memory._replace(plan=plan._replace(request=plan.request._replace(run_in=0.0), steps=1))
     is_blocked = status in (PlanningStatus.GOAL_BLOCKED, PlanningStatus.START_BLOCKED)
-    is_blocked = is_blocked or memory.perception.remembered[-1].is_present
+    is_blocked = is_blocked or any(echo.is_present and echo.is_unexplained for echo in memory.perception.echoes)
     reason = Reason.BLOCKED if is_blocked else Reason.NO_PATH
     reason = Reason.BAD_PARAMETER if status == PlanningStatus.TOO_MANY_EDGES else reason
     return without_path(memory, reason, inputs, params)
@@ -259,10 +250,6 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     slot = slot_in_map(memory, pose, params)
     beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
     mapped = obstacle_map(beside, slot, outline, pose, _free_road(memory, params), params.mapping)
-    half_angle = params.car.ultrasonic.half_angle
-    before = memory.perception.remembered
-    remembered = tuple(without_explained(echo, mapped, half_angle, params.monitor) for echo in before)
-    memory = memory._replace(perception=memory.perception._replace(remembered=remembered))
     memory = _with_plan(memory, mapped, goal_pose(slot, outline, params.slot), inputs, params)
     least = least_depth(slot, outline, params.slot)
     if slot.depth < least:
@@ -321,11 +308,8 @@ def _with_plan(
     What the sensors measure now of what is ``mapped`` is kept clear of, too: the monitor may not let it nearer.
     """
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    present = tuple(
-        EchoObstacle() if echo.is_unexplained else echo_away_from_vehicle(echo, outline, inputs.odometry)
-        for echo in memory.perception.echoes
-    )
-    obstacles = with_echoes(mapped, memory.perception.remembered + present)
+    present = tuple(echo_away_from_vehicle(echo, outline, inputs.odometry) for echo in memory.perception.echoes)
+    obstacles = with_echoes(mapped, present)
     cusps = max(max_manoeuvres(memory, params) - memory.progress.manoeuvres - 1, 0)
     has_map = memory.strategy == Strategy.POSE
     run_in = 0.0

@@ -14,7 +14,6 @@ from controller_fmu.parking.measurement.sensor import MAX_SENSORS
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, MonitorVerdict
 from controller_fmu.parking.monitor.fault_monitor import FaultClocks
 from controller_fmu.parking.objects.track import ObjectTrack
-from controller_fmu.parking.obstacle_map import MAX_REMEMBERED
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.slots.candidate import SlotCandidate
 from controller_fmu.parking.slots.slot_filter import SlotFilter
@@ -79,7 +78,6 @@ class Perception(NamedTuple):
     local_map: LandmarkMap = LandmarkMap()
     tracks: tuple[ObjectTrack, ...] = (ObjectTrack(),) * MAX_SENSORS
     echoes: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_SENSORS
-    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * MAX_REMEMBERED
     yields: int = 0
     """Measurement cycles for which the vehicle still stands for a moving object."""
 

@@ -42,7 +42,6 @@ from controller_fmu.parking.monitor.fault_monitor import (
     input_fault,
     is_taken_over,
 )
-from controller_fmu.parking.obstacle_map import MAX_REMEMBERED, remember_echoes
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.path_planning import (
     begin_plan,
@@ -288,15 +287,7 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
     if state == ParkingState.PLANNING and before == ParkingState.STANDBY:
         memory = memory._replace(strategy=Strategy.POSE)
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
-        remembered = memory.perception.remembered
-        is_blocked = memory.verdict.is_blocked
-        if is_blocked:
-            remembered = remember_echoes(remembered, memory.perception.echoes)
-        memory = memory._replace(
-            perception=memory.perception._replace(remembered=remembered),
-            clocks=memory.clocks._replace(blocked=0),
-            verdict=MonitorVerdict(),
-        )
+        memory = memory._replace(clocks=memory.clocks._replace(blocked=0), verdict=MonitorVerdict())
         memory = begin_plan(memory)
     if state == ParkingState.STEERING and before != ParkingState.STEERING:
         memory = memory._replace(progress=next_segment(memory.progress, inputs.odometry, context))
@@ -322,9 +313,7 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
         strategy=Strategy.SLOT,
         reason=Reason.NONE,
         search=memory.search._replace(stand=pose, waited=0, resumes=False),
-        perception=memory.perception._replace(
-            remembered=(EchoObstacle(),) * MAX_REMEMBERED, echoes=(EchoObstacle(),) * MAX_SENSORS
-        ),
+        perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS),
         plan=PlanProgress(),
         progress=PathProgress(speed_delay=memory.progress.speed_delay),
         verdict=MonitorVerdict(),

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
 from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
-from controller_fmu.parking.geometry.polygons import LOCAL_VERTICES, ObstacleMap, Vertex
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.measurement.predicted_range import (
@@ -40,7 +39,6 @@ from controller_fmu.parking.objects.track import (
     with_approach,
     with_expectation,
 )
-from controller_fmu.parking.obstacle_map import without_explained
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.perception import echo_obstacle, surface_near
@@ -337,21 +335,6 @@ def test_every_state_has_a_way_out_and_faults_win() -> None:
         others = sum(1 << condition for condition in Condition if condition > Condition.FAULT)
         assert next_parking_state(state, others | 1 << Condition.FAULT) == ParkingState.FAILED
         assert next_parking_state(state, others | 1 << Condition.TAKEN_OVER) == ParkingState.TAKEOVER
-
-
-def test_a_remembered_echo_is_forgotten_once_the_map_explains_it() -> None:
-    """A rear outer sensor looks 30 deg aside: its echo of the wall behind is put on its axis, 7 cm before that wall."""
-    behind, aside = 0.5, math.radians(30.0)
-    ux, uy = -math.cos(aside), math.sin(aside)
-    echo = EchoObstacle(behind * ux, behind * uy, 0.0, True, True, ux, uy, behind)
-    wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, 2.0, 1))
-    obstacles = ObstacleMap(wall + (Vertex(),) * (LOCAL_VERTICES - 2))
-    params = MonitorParams()
-    assert not without_explained(echo, obstacles, aside, params).is_present
-    assert without_explained(echo, ObstacleMap(), aside, params) == echo
-    aside_wall = (Vertex(-behind, -2.0, 1), Vertex(-behind, -1.0, 1))
-    beside = ObstacleMap(aside_wall + (Vertex(),) * (LOCAL_VERTICES - 2))
-    assert without_explained(echo, beside, aside, params) == echo, "the sensor does not see it"
 
 
 def test_the_requested_speed_falls_gently_at_a_planned_stop_and_at_once_where_the_monitor_brakes() -> None:

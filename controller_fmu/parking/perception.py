@@ -8,9 +8,8 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame, pose_from_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.map.chain_update import put_facing
+from controller_fmu.parking.map.chain_update import put_facing, put_post
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
-from controller_fmu.parking.map.landmark import LandmarkType
 from controller_fmu.parking.map.local_map import range_by_map, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
@@ -92,9 +91,8 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
         memory = memory._replace(search=with_slot_type(memory.search, params))
         memory = memory._replace(perception=memory.perception._replace(tracks=tracks))
-        memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
-        return _with_obstacles(memory, inputs, params)
-    return memory._replace(perception=_with_measurements(memory.perception, inputs, params))
+    memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
+    return _with_obstacles(memory, inputs, params) if is_driving_state(memory.state) else memory
 
 
 def _with_measurements(perception: Perception, inputs: ParkingSystemInput, params: ParkingParams) -> Perception:
@@ -169,31 +167,38 @@ def _with_obstacles(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
 
 
 def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
-    """Return the memory with surfaces at rest that two sensors of a bumper measure elsewhere than map and plan.
+    """Return the memory with what two sensors of a bumper beside each other measure elsewhere than map and plan.
 
-    Into a slot across the road the bumper passes its corners, where both echoes may come from: they are no surface.
+    Both in the middle measure a surface at rest. One of them and the outer one, which looks aside, measure a post: it
+    may come between their cones later. Into a slot across the road the bumper passes its corners, which are neither.
     """
-    is_across = memory.search.slot.type == SlotType.PERPENDICULAR
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
-    for number in (FRONT_MIDDLE, REAR_MIDDLE):
+    moves = abs(inputs.measured_speed) > params.threshold.standstill
+    for number in (0, FRONT_MIDDLE, 2, 4, REAR_MIDDLE, 6):
         a = memory.perception.tracks[number]
         b = memory.perception.tracks[number + 1]
-        is_displaced = abs(a.range - a.expected) > MAX_DISPLACEMENT and abs(b.range - b.expected) > MAX_DISPLACEMENT
-        if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
-            first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
-            second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
-            new = facing_segment(first, a.range, second, b.range, variance)
-            at = point_between(first, a.range, second, b.range)
-            if new.type != LandmarkType.NONE and not (is_across and is_slot_corner(memory.search.slot_filter, at)):
-                landmarks = put_facing(memory.perception.local_map.landmarks, new, params.mapping)
-                memory = with_landmarks(memory, landmarks)
+        first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+        second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
+        at = point_between(first, a.range, second, b.range)
+        is_corner = memory.search.slot.type == SlotType.PERPENDICULAR and is_slot_corner(memory.search.slot_filter, at)
+        if a.missed == 0 and b.missed == 0 and max(a.range, b.range) < MAX_FACING_RANGE and not is_corner:
+            nearer = a.expected - a.range
+            nearer_b = b.expected - b.range
+            landmarks = memory.perception.local_map.landmarks
+            if number == FRONT_MIDDLE or number == REAR_MIDDLE:
+                is_displaced = min(abs(nearer), abs(nearer_b)) > MAX_DISPLACEMENT
+                if is_displaced and is_at_rest(a) and is_at_rest(b):
+                    new = facing_segment(first, a.range, second, b.range, variance)
+                    memory = with_landmarks(memory, put_facing(landmarks, new, params.mapping))
+            elif moves and max(nearer, nearer_b) > MAX_DISPLACEMENT and min(a.range, b.range) > 0.0:
+                memory = with_landmarks(memory, put_post(landmarks, first, second, at, variance, params.mapping))
     return memory
 
 
 def is_at_rest(track: ObjectTrack) -> bool:
     """Return whether a track is confirmed by enough echoes, and its object stands."""
-    return track.missed == 0 and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
+    return track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
 
 
 def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> ObjectTrack:

@@ -20,6 +20,7 @@ from controller_fmu.parking.measurement.predicted_range import (
     predict_range_to_segment,
 )
 from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, in_field_of_view
+from modelkit.geometry import Point
 
 SIDE_DEVIATION = 0.02
 """Standard deviation [m] of a vehicle's side from a straight line: bumpers, mirrors, wheels."""
@@ -39,6 +40,11 @@ def predict_range(sensor: SensorPose, landmark: Landmark) -> PredictedRange:
     if landmark.type == LandmarkType.POINT:
         return predict_range_to_point(sensor, landmark.x, landmark.y)
     return predict_range_to_segment(sensor, start_point(landmark), end_point(landmark))
+
+
+def may_be_in_view(sensor: SensorPose, at: Point) -> bool:
+    """Return whether a sensor whose mounting errs may see a point."""
+    return in_field_of_view(sensor._replace(cone_sin=sensor.cone_sin / WELL_IN_VIEW), at.x, at.y)
 
 
 def is_in_reach(landmark: Landmark, sensor: SensorPose, reach: float) -> bool:

@@ -63,6 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
             raise BadInput(f"{bound:g} is not 0 or more", key=f"--{key}")
     logs = [arguments.a, arguments.b, *arguments.more]
     runs = [read_log(log) for log in logs]
+    scenarios = [str(run.info.get("scenario", {}).get("name", "")) for run in runs]
+    if len(set(filter(None, scenarios))) > 1:
+        say(f"apa: note: the runs are of different scenarios: {', '.join(scenarios)}")
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
     for pattern in tolerances.patterns_without_match([*(name for run in runs for name in run.signals), DURATION]):
         say(f"apa: warning: {arguments.tolerances}: {pattern}: no signal fits, so it changes nothing")

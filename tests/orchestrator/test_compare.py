@@ -186,6 +186,15 @@ def test_tube_against_a_search_over_all_pairs() -> None:
         assert excess == pytest.approx(max(edges[0] - value, value - edges[1]), abs=0.02)
 
 
+def test_runs_of_different_scenarios_are_said_to_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("guo2015-case3", "guo2015-case4"):
+        run = ["run", name, "--fmus", "none", "--no-page", "--set", "stop_time=0.1", "--out", str(tmp_path / name)]
+        assert main(run) == 1
+    capsys.readouterr()
+    assert main(["compare", str(tmp_path / "guo2015-case3"), str(tmp_path / "guo2015-case4")]) == 0
+    assert "note: the runs are of different scenarios: guo2015-case3, guo2015-case4" in capsys.readouterr().err
+
+
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ("a", "same", "other")
     sets: tuple[list[str], ...] = ([], [], ["--set", "controller.guo2015.k4=3"])

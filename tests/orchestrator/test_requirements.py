@@ -89,7 +89,7 @@ def test_a_window_opens_each_time_a_moment_comes() -> None:
     assert check(run, max_abs=1.0, window={**AFTER, "lasting": 0}).passed
     assert not check(run, max_abs=1.0, window={**AFTER, "lasting": "2 s"}).passed
     assert check(run, max_abs=1.0, window={"after": {"signal": "vehicle.speed", "min": "10 m/s"}}).note == NEVER
-    with pytest.raises(BadInput, match="no signal of this name"):
+    with pytest.raises(BadInput, match=r"window\.after: vehicle\.sped: no signal of this name"):
         check(run, max_abs=1.0, window={"after": {"signal": "vehicle.sped", "min": 1}})
     with pytest.raises(BadInput, match="the limit is in m"):
         check(run, max_abs=1.0, window={"after": {"signal": "vehicle.speed", "min": "1 m"}})

@@ -175,6 +175,9 @@ def test_a_mistake_is_one_clear_sentence(tmp_path: Path, text: str, message: str
         ("car.wheelbas=3", r"--set: car\.wheelbas: unknown; did you mean car.wheelbase"),
         ("controller.system=mpcc", r"--set: controller\.system: 'mpcc' is none of ntbptcwpt"),
         ("nothing=3", "--set: nothing: unknown"),
+        ("faults[1].delay=3", r"--set: faults\[1\]\.delay: unknown; set the whole list: faults=\[\.\.\.\]"),
+        ("controller.system=1 kg", r"--set: controller\.system: '1 kg' is none of ntbptcwpt"),
+        ("decimation.vehicle=two", "'two'"),
     ],
 )
 def test_a_wrong_set_is_explained(given: str, message: str) -> None:

@@ -104,7 +104,7 @@ def _print(subject: "Subject", result: "FalsificationResult", page: Path) -> Non
     from orchestrator.studies.falsification.page import bound_text, counterexamples_text
 
     screen = console()
-    screen.print(f"{result.runs} runs, {result.broken} break: {subject.objective.text}", markup=False)
+    screen.print(f"{result.runs} runs, {result.broken} violate: {subject.objective.text}", markup=False)
     for line in (*counterexamples_text(subject, result), *bound_text(result)):
         screen.print(line, markup=False, soft_wrap=True)
     screen.print(f"page in {page}", markup=False)

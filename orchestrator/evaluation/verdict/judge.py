@@ -199,7 +199,7 @@ class _WindowRows:
         if window is None:
             return
         if window.after is not None:
-            self._after = _After(window.after, window, recording, file, f"{where}: window.after")
+            self._after = _After(window.after, window, recording, file, f"{where}: window.after: {window.after.signal}")
         if window.phase:
             if CHART not in recording.signals:
                 raise BadInput(f"the run has no {CHART}", file=file, key=f"{where}: window.phase")

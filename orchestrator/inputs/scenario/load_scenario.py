@@ -321,6 +321,8 @@ def _check_keys(keys: Iterable[str], file: object) -> None:
     for key in keys:
         if key not in FIELDS:
             hint = suggestion(key, _parameters_called(key)) or suggestion_or_choices(key, FIELDS)
+            if key.partition("[")[0] in FIELDS:
+                hint = f"; set the whole list: {key.partition('[')[0]}=[...]"
             raise BadInput(f"unknown{hint}", file=file, key=key)
 
 

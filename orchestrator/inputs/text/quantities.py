@@ -2,6 +2,7 @@
 
 import math
 import re
+from contextlib import suppress
 from typing import Annotated
 
 from pydantic import BeforeValidator, Field
@@ -189,8 +190,10 @@ def _integer(value: object, variable: Variable, file: object) -> int:
             close = suggestion(word, names)
             raise BadInput(f"{format_value(value)} is none of {', '.join(names)}{close}", file=file, key=variable.name)
         return names[word]
-    exact = number(value, variable.signal.unit, file=file, key=variable.name)
-    if not math.isfinite(exact) or exact != round(exact):
+    exact = math.nan
+    with suppress(BadInput):
+        exact = number(value, variable.signal.unit)
+    if not exact.is_integer():
         raise BadInput(f"{format_value(value)} is not a whole number", file=file, key=variable.name)
     if states is not None and int(exact) not in {int(member) for member in states}:
         known = ", ".join(f"{int(member)} {member.name.lower()}" for member in states)

@@ -77,13 +77,12 @@ def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: f
     first = chain.echoes[0]
     if sensor.axis_x * first.axis_x + sensor.axis_y * first.axis_y <= MAX_TURN_COS:
         return False
-    for back in range(1, SLOPE_ECHOES + 1):
-        if back == 1 or back <= chain.used:
-            before = chain.echoes[max(chain.used - back, 0)]
-            step = planar_distance(sensor.x, sensor.y, before.x, before.y)
-            jump = abs(measured - before.range) - MAX_SLOPE * step
-            if jump >= JUMP_SIGMA * math.sqrt(2.0 * variance):
-                return False
+    for back in range(1, min(SLOPE_ECHOES, chain.used) + 1):
+        before = chain.echoes[chain.used - back]
+        step = planar_distance(sensor.x, sensor.y, before.x, before.y)
+        jump = abs(measured - before.range) - MAX_SLOPE * step
+        if jump >= JUMP_SIGMA * math.sqrt(2.0 * variance):
+            return False
     return True
 
 

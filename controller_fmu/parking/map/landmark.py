@@ -95,9 +95,7 @@ def with_offset_variance(landmark: Landmark, variance: float) -> Landmark:
     nx = -math.sin(landmark.heading)
     ny = math.cos(landmark.heading)
     return landmark._replace(
-        xx=landmark.xx + variance * nx * nx,
-        xy=landmark.xy + variance * nx * ny,
-        yy=landmark.yy + variance * ny * ny,
+        xx=landmark.xx + variance * nx * nx, xy=landmark.xy + variance * nx * ny, yy=landmark.yy + variance * ny * ny
     )
 
 
@@ -108,17 +106,10 @@ def segment_between(a: Point, b: Point, viewer: Point, variance: float, end_vari
     towards = 1.0 if dx * (viewer.y - a.y) - dy * (viewer.x - a.x) > 0.0 else -1.0
     square = dx * dx + dy * dy
     half = 0.5 * math.sqrt(square)
-    segment = Landmark(
-        type=LandmarkType.SEGMENT,
-        x=0.5 * (a.x + b.x),
-        y=0.5 * (a.y + b.y),
-        heading=math.atan2(towards * dy, towards * dx),
-        hh=4.0 * variance / max(square, variance),
-        start=-half,
-        end=half,
-        start_variance=end_variance,
-        end_variance=end_variance,
-    )
+    heading = math.atan2(towards * dy, towards * dx)
+    hh = 4.0 * variance / max(square, variance)
+    segment = Landmark(type=LandmarkType.SEGMENT, x=0.5 * (a.x + b.x), y=0.5 * (a.y + b.y), heading=heading, hh=hh)
+    segment = segment._replace(start=-half, end=half, start_variance=end_variance, end_variance=end_variance)
     return with_offset_variance(segment, variance)
 
 

@@ -164,14 +164,10 @@ def line_of(run: BoundaryRun, variance: float) -> Landmark:
     heading = 0.5 * math.atan2(2.0 * points.xy, difference)
     root = math.sqrt(difference * difference + 4.0 * points.xy * points.xy)
     along = 0.5 * (points.xx + points.yy + root)
-    line = Landmark(
-        type=LandmarkType.SEGMENT,
-        x=run.first.x + points.x,
-        y=run.first.y + points.y,
-        heading=heading,
-        hh=variance / max(along, variance),
-        confirmations=run.sums.n,
-    )
+    x = run.first.x + points.x
+    y = run.first.y + points.y
+    hh = variance / max(along, variance)
+    line = Landmark(type=LandmarkType.SEGMENT, x=x, y=y, heading=heading, hh=hh, confirmations=run.sums.n)
     return with_offset_variance(line, variance / float(max(points.n, 1)))
 
 
@@ -200,13 +196,9 @@ def side_of(run: BoundaryRun, sensor: SensorPose, turn: float, ends: int, varian
     first_is_near = (first - last) * (foot - last) > 0.0
     first_known = run.begins == Ending.EDGE or (first_is_near and run.begins == Ending.CONTINUES)
     last_known = ends == Ending.EDGE or (not first_is_near and ends == Ending.CONTINUES)
-    forward = first < last
-    side = line._replace(
-        start=min(first, last),
-        end=max(first, last),
-        start_known=first_known if forward else last_known,
-        end_known=last_known if forward else first_known,
-    )
+    start_known = first_known if first < last else last_known
+    end_known = last_known if first < last else first_known
+    side = line._replace(start=min(first, last), end=max(first, last), start_known=start_known, end_known=end_known)
     return _with_opening(side, angle, angle - half, run.range)
 
 
@@ -225,8 +217,6 @@ def _with_opening(side: Landmark, angle: float, off_boundary: float, measured: f
     opening = CONE_SIGMA * math.sin(off_boundary)
     shift = opening * measured
     end_variance = CONE_SIGMA * CONE_SIGMA * measured * measured
-    return with_offset_variance(side, shift * shift)._replace(
-        hh=side.hh + opening * opening * math.sin(angle) * math.sin(angle),
-        start_variance=end_variance,
-        end_variance=end_variance,
-    )
+    side = with_offset_variance(side, shift * shift)
+    hh = side.hh + opening * opening * math.sin(angle) * math.sin(angle)
+    return side._replace(hh=hh, start_variance=end_variance, end_variance=end_variance)

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.parking.map.echo_chain import MAX_ECHOES, EchoChain
-from controller_fmu.parking.map.landmark import Landmark, LandmarkType, with_offset_variance
+from controller_fmu.parking.map.landmark import Landmark, with_offset_variance
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 
@@ -125,11 +125,9 @@ def _with_echo(
     other = (across, across, turning, of_start, of_start, of_start, of_end, of_end, of_end)
     c, q, a, b = normal.right
     pull = weight * residual
-    return NormalEquations(
-        tuple(normal.matrix[number] + weight * row[number] * other[number] for number in range(9)),
-        (c + pull * across, q + pull * turning, a + pull * of_start, b + pull * of_end),
-        normal.chi_square + pull * residual,
-    )
+    matrix = tuple(normal.matrix[number] + weight * row[number] * other[number] for number in range(9))
+    right = (c + pull * across, q + pull * turning, a + pull * of_start, b + pull * of_end)
+    return NormalEquations(matrix, right, normal.chi_square + pull * residual)
 
 
 def solve(normal: NormalEquations, right: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
@@ -157,25 +155,18 @@ def _apply_step(segment: Landmark, step: tuple[float, float, float, float]) -> L
     if end < start + MIN_EXTENT:
         start = 0.5 * (start + end - MIN_EXTENT)
         end = start + MIN_EXTENT
-    return segment._replace(
-        x=segment.x - shift * math.sin(segment.heading),
-        y=segment.y + shift * math.cos(segment.heading),
-        heading=wrap_angle(segment.heading + turn),
-        start=start,
-        end=end,
-    )
+    x = segment.x - shift * math.sin(segment.heading)
+    y = segment.y + shift * math.cos(segment.heading)
+    return segment._replace(x=x, y=y, heading=wrap_angle(segment.heading + turn), start=start, end=end)
 
 
 def _with_covariance(segment: Landmark, normal: NormalEquations) -> Landmark:
     """Return the segment with the inverse of its normal matrix as covariance."""
     of_shift = solve(normal, (1.0, 0.0, 0.0, 0.0))
     of_turn = solve(normal, (0.0, 1.0, 0.0, 0.0))
+    of_start = solve(normal, (0.0, 0.0, 1.0, 0.0))
+    of_end = solve(normal, (0.0, 0.0, 0.0, 1.0))
     segment = with_offset_variance(segment, of_shift[0] + SURFACE_DEVIATION * SURFACE_DEVIATION)
-    return segment._replace(
-        type=LandmarkType.SEGMENT,
-        xh=of_shift[1] * -math.sin(segment.heading),
-        yh=of_shift[1] * math.cos(segment.heading),
-        hh=of_turn[1],
-        start_variance=solve(normal, (0.0, 0.0, 1.0, 0.0))[2],
-        end_variance=solve(normal, (0.0, 0.0, 0.0, 1.0))[3],
-    )
+    xh = of_shift[1] * -math.sin(segment.heading)
+    yh = of_shift[1] * math.cos(segment.heading)
+    return segment._replace(xh=xh, yh=yh, hh=of_turn[1], start_variance=of_start[2], end_variance=of_end[3])

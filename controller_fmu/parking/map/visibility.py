@@ -88,8 +88,7 @@ def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
         if not (is_all_in_view if is_short else predicted.origin == EchoOrigin.INTERIOR):
             return False
     along = along_of(landmark, predicted.x, predicted.y)
-    roughness = SIDE_DEVIATION * SIDE_DEVIATION
-    sigma = math.sqrt(offset_variance(landmark, along) + measurement.variance + roughness)
+    sigma = math.sqrt(offset_variance(landmark, along) + measurement.variance + SIDE_DEVIATION * SIDE_DEVIATION)
     narrow = sensor._replace(cone_sin=WELL_IN_VIEW * sensor.cone_sin)
     surely_in_view = in_field_of_view(narrow, predicted.x, predicted.y)
     beyond_blind_zone = predicted.distance > measurement.min_range + 3.0 * sigma

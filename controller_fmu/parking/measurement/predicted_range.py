@@ -110,12 +110,9 @@ def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> SegmentPart:
 
 def range_to_polygons(sensor: SensorPose, vertices: tuple[Vertex, ...], max_range: float) -> PredictedRange:
     """Return the nearest point of all polygons in a sensor's view, at most ``max_range`` [m] away, else on its axis."""
-    nearest = PredictedRange(
-        max_range,
-        int(EchoOrigin.OUT_OF_VIEW),
-        sensor.x + max_range * sensor.axis_x,
-        sensor.y + max_range * sensor.axis_y,
-    )
+    x = sensor.x + max_range * sensor.axis_x
+    y = sensor.y + max_range * sensor.axis_y
+    nearest = PredictedRange(max_range, int(EchoOrigin.OUT_OF_VIEW), x, y)
     for number in range(len(vertices)):
         a = vertices[number]
         if a.polygon > 0:

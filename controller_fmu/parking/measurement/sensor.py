@@ -66,14 +66,9 @@ def sensor_pose(mount: SensorMount, half_angle: float, vehicle: Pose) -> SensorP
     cos = math.cos(vehicle.heading)
     sin = math.sin(vehicle.heading)
     axis = vehicle.heading + mount.yaw
-    return SensorPose(
-        vehicle.x + mount.x * cos - mount.y * sin,
-        vehicle.y + mount.x * sin + mount.y * cos,
-        math.cos(axis),
-        math.sin(axis),
-        math.cos(half_angle),
-        math.sin(half_angle),
-    )
+    x = vehicle.x + mount.x * cos - mount.y * sin
+    y = vehicle.y + mount.x * sin + mount.y * cos
+    return SensorPose(x, y, math.cos(axis), math.sin(axis), math.cos(half_angle), math.sin(half_angle))
 
 
 def reading_status(reading: float, sensors: CarUltrasonic) -> int:

@@ -77,17 +77,12 @@ def update_track(
         return begun
     kr = predicted.rr / s
     kv = predicted.rv / s
-    return ObjectTrack(
-        predicted.range + kr * y,
-        predicted.rate + kv * y,
-        predicted.rr - kr * predicted.rr,
-        predicted.rv - kr * predicted.rv,
-        predicted.vv - kv * predicted.rv,
-        track.confirmations + 1,
-        0,
-        track.unexplained,
-        approach=track.approach,
-    )
+    r = predicted.range + kr * y
+    v = predicted.rate + kv * y
+    rr = predicted.rr - kr * predicted.rr
+    rv = predicted.rv - kr * predicted.rv
+    vv = predicted.vv - kv * predicted.rv
+    return ObjectTrack(r, v, rr, rv, vv, track.confirmations + 1, 0, track.unexplained, approach=track.approach)
 
 
 def with_approach(before: ObjectTrack, after: ObjectTrack, static_approach: float) -> ObjectTrack:

@@ -18,21 +18,6 @@ UNREACHABLE_COST = 1e6
 NOT_QUEUED = -2
 
 
-def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: SearchRegion) -> int:
-    """Return the count of edges with this one added, as far as it lies in the search region or within 10 m of it."""
-    low = Point(region.x0 - 10.0, region.y0 - 10.0)
-    high = Point(region.x0 + region.side + 10.0, region.y0 + region.side + 10.0)
-    part = clip_to_box(start, end, low, high)
-    if part.enter > part.leave:
-        return count
-    if count < len(work.edge_x1):
-        work.edge_x1[count] = start.x + part.enter * (end.x - start.x)
-        work.edge_y1[count] = start.y + part.enter * (end.y - start.y)
-        work.edge_x2[count] = start.x + part.leave * (end.x - start.x)
-        work.edge_y2[count] = start.y + part.leave * (end.y - start.y)
-    return count + 1
-
-
 def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: VehicleOutline) -> bool:
     """List the edges near each cell; returns whether edges and lists have room for all."""
     if edges > len(work.edge_x1):
@@ -170,21 +155,27 @@ def _cost_to_go_cell(x: float, y: float, region: SearchRegion) -> int:
 
 
 def add_edges(work: PlanningWork, origin: Pose, region: SearchRegion) -> int:
-    """Copy the polygons' edges into the frame of ``origin``; returns how many lie in or near the search region.
+    """Copy the polygons' edges into the frame of ``origin``, as far as they lie within 10 m of the search region.
 
-    A line has one edge, not a second one back.
+    Returns how many do. A line has one edge, not a second one back.
     """
+    low = Point(region.x0 - 10.0, region.y0 - 10.0)
+    high = Point(region.x0 + region.side + 10.0, region.y0 + region.side + 10.0)
     count = 0
     for vertex in range(work.counts[PlanCount.VERTEX_COUNT]):
         if work.corner_of[vertex] > 0:
             after = next_corner(work, vertex)
-            if after != vertex - 1:
-                count = add_edge(work, count, _as_from(origin, work, vertex), _as_from(origin, work, after), region)
+            start = Point(work.corner_x[vertex] - origin.x, work.corner_y[vertex] - origin.y)
+            end = Point(work.corner_x[after] - origin.x, work.corner_y[after] - origin.y)
+            part = clip_to_box(start, end, low, high)
+            if after != vertex - 1 and part.enter <= part.leave:
+                if count < len(work.edge_x1):
+                    work.edge_x1[count] = start.x + part.enter * (end.x - start.x)
+                    work.edge_y1[count] = start.y + part.enter * (end.y - start.y)
+                    work.edge_x2[count] = start.x + part.leave * (end.x - start.x)
+                    work.edge_y2[count] = start.y + part.leave * (end.y - start.y)
+                count += 1
     return count
-
-
-def _as_from(origin: Pose, work: PlanningWork, vertex: int) -> Point:
-    return Point(work.corner_x[vertex] - origin.x, work.corner_y[vertex] - origin.y)
 
 
 def next_corner(work: PlanningWork, vertex: int) -> int:

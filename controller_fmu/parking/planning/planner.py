@@ -127,7 +127,14 @@ def restart(work: PlanningWork) -> None:
 
 def store_request(work: PlanningWork, local: ObstacleMap, known: tuple[Vertex, ...], request: PlanningRequest) -> bool:
     """Store scene and request in the work arrays; returns whether they held the same before."""
-    numbers = _numbers(request)
+    start = request.start
+    goal = request.goal
+    car = request.car
+    numbers: tuple[float, ...] = (
+        (start.x, start.y, start.heading, goal.x, goal.y, goal.heading)
+        + (car.centre_ahead, car.half_length, car.half_width, car.max_curvature)
+        + (request.margin, request.run_in, float(request.max_cusps))
+    )
     count = LOCAL_VERTICES + (len(known) if request.has_map else 0)
     is_same = work.counts[PlanCount.VERTEX_COUNT] == count
     work.counts[PlanCount.VERTEX_COUNT] = count
@@ -197,17 +204,6 @@ def path_of_plan(work: PlanningWork, request: PlanningRequest) -> PlannedPath:
     return PlannedPath(count, margin, work.values[PlanValue.BEST_PATH_COST], segments)
 
 
-def _numbers(request: PlanningRequest) -> tuple[float, ...]:
-    start = request.start
-    goal = request.goal
-    car = request.car
-    return (
-        (start.x, start.y, start.heading, goal.x, goal.y, goal.heading)
-        + (car.centre_ahead, car.half_length, car.half_width, car.max_curvature)
-        + (request.margin, request.run_in, float(request.max_cusps))
-    )
-
-
 def _finish(work: PlanningWork, status: int) -> None:
     work.counts[PlanCount.PHASE] = PlanningPhase.FINISHED
     work.counts[PlanCount.STATUS] = status
@@ -262,7 +258,11 @@ def _keep_if_better(work: PlanningWork, run_in: float, problem: SearchProblem) -
     cost = span_cost(work, 0, count, problem)
     best = work.counts[PlanCount.BEST_SEGMENT_COUNT]
     is_worse = best > 0 and work.values[PlanValue.BEST_PATH_COST] <= cost
-    if count > MAX_SEGMENTS or cusps_of(work) > work.requested[MAX_CUSPS] or is_worse:
+    cusps = 0
+    for segment in range(1, count):
+        if work.segment_length[segment] * work.segment_length[segment - 1] < 0.0:
+            cusps += 1
+    if count > MAX_SEGMENTS or cusps > work.requested[MAX_CUSPS] or is_worse:
         return
     for number in range(count):
         place = count - 1 - number if problem.from_goal else number
@@ -282,15 +282,6 @@ def _add_run_in(work: PlanningWork, run_in: float, problem: SearchProblem) -> No
         set_segment(work, 0, pose_along_arc(problem.root, run_in, 0.0), -run_in, 0.0)
     else:
         set_segment(work, count, problem.target, run_in, 0.0)
-
-
-def cusps_of(work: PlanningWork) -> int:
-    """Return how often the path in hand changes its direction."""
-    found = 0
-    for segment in range(1, work.counts[PlanCount.SEGMENT_COUNT]):
-        if work.segment_length[segment] * work.segment_length[segment - 1] < 0.0:
-            found += 1
-    return found
 
 
 def _next_stage(work: PlanningWork) -> None:

@@ -74,8 +74,7 @@ def smooth(work: PlanningWork, problem: SearchProblem) -> bool:
     if place + span > count:
         span = span - 1 if span <= count else count
         place = 0
-    if span > MAX_SPAN:
-        span = MAX_SPAN
+    span = min(span, MAX_SPAN)
     if span < 2:
         if work.counts[PlanCount.HAS_GAINED] == 0 or work.counts[PlanCount.PASS_COUNT] >= MAX_PASSES:
             return False
@@ -92,10 +91,10 @@ def smooth(work: PlanningWork, problem: SearchProblem) -> bool:
     return True
 
 
-def joint_cost(distance: float, k: float, next_distance: float, next_k: float, problem: SearchProblem) -> float:
-    """Return the cost [m] of a joint: lengths [m], reverse negative, and curvatures [1/m] of the segments at it."""
-    cost = abs(next_k - k) / problem.car.max_curvature * STEERING_COST
-    return cost + CUSP_COST if distance * next_distance < 0.0 else cost
+def joint_cost(work: PlanningWork, distance: float, k: float, segment: int, problem: SearchProblem) -> float:
+    """Return the cost [m] of a joint: a segment behind ``distance`` [m], reverse negative, of curvature ``k`` [1/m]."""
+    cost = abs(work.segment_curvature[segment] - k) / problem.car.max_curvature * STEERING_COST
+    return cost + CUSP_COST if distance * work.segment_length[segment] < 0.0 else cost
 
 
 def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> float:
@@ -106,16 +105,10 @@ def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem)
         cost += abs(work.segment_length[segment])
     for segment in range(place, place + span + 1):
         if segment == 0:
-            cost += abs(work.segment_curvature[segment]) / problem.car.max_curvature * STEERING_COST
+            cost += joint_cost(work, 0.0, 0.0, segment, problem)
         elif segment < count:
             before = segment - 1
-            cost += joint_cost(
-                work.segment_length[before],
-                work.segment_curvature[before],
-                work.segment_length[segment],
-                work.segment_curvature[segment],
-                problem,
-            )
+            cost += joint_cost(work, work.segment_length[before], work.segment_curvature[before], segment, problem)
     return cost
 
 
@@ -153,16 +146,13 @@ def _cost_after(work: PlanningWork, word: int, segment: int, problem: SearchProb
         if word_length(work, word, number) != 0.0:
             distance = word_length(work, word, number)
             k = word_curvature(work, word, number, problem)
-    return joint_cost(distance, k, work.segment_length[segment], work.segment_curvature[segment], problem)
+    return joint_cost(work, distance, k, segment, problem)
 
 
 def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: SearchProblem) -> bool:
     """Put a word in place of some segments; returns whether there was room."""
     count = work.counts[PlanCount.SEGMENT_COUNT]
-    used = 0
-    for number in range(WORD_SEGMENTS):
-        if word_length(work, word, number) != 0.0:
-            used += 1
+    used = sum(1 if word_length(work, word, number) != 0.0 else 0 for number in range(WORD_SEGMENTS))
     if count + used - span > WORK_SEGMENTS:
         return False
     pose = pose_at(work, place)

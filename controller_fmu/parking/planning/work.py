@@ -28,10 +28,7 @@ NO_INDEX = -1
 
 
 class PlanningWork(NamedTuple):
-    """Edges with their rasters, the tree with its table and queue, the words tried, the path found.
-
-    All of these are a memo: they follow from the request and the number of steps.
-    """
+    """A memo of request and step count: edges with their grids, tree with table and queue, words tried, path found."""
 
     edge_x1: Annotated[Floats, Column("d", MAX_EDGES, "m", "x of an edge's first end")]
     edge_y1: Annotated[Floats, Column("d", MAX_EDGES, "m", "y of an edge's first end")]
@@ -39,12 +36,8 @@ class PlanningWork(NamedTuple):
     edge_y2: Annotated[Floats, Column("d", MAX_EDGES, "m", "y of an edge's second end")]
     cell_start: Annotated[Ints, Column("i", EDGE_CELLS * EDGE_CELLS + 1, "1", "where a cell's list of edges begins")]
     cell_edge: Annotated[Ints, Column("h", EDGE_ITEMS, "1", "edges by cell")]
-    cost_to_go: Annotated[
-        Floats, Column("f", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "m", "distance of a point to the target")
-    ]
-    cost_to_go_next: Annotated[
-        Ints, Column("i", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "1", "next cell of the same bucket")
-    ]
+    cost_to_go: Annotated[Floats, Column("f", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "m", "distance to the target")]
+    cost_to_go_next: Annotated[Ints, Column("i", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "1", "next cell of its bucket")]
     bucket: Annotated[Ints, Column("i", BUCKET_COUNT, "1", "first node, or cell, of a bucket of the queue")]
     slot: Annotated[Ints, Column("i", HASH_SIZE, "1", "first node of a slot of the hash table")]
     node_x: Annotated[Floats, Column("f", MAX_NODES, "m", "x of the rear axle")]

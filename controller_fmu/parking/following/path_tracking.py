@@ -75,17 +75,9 @@ class SpeedTracking(NamedTuple):
 def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: FollowingContext) -> PathProgress:
     """Return the progress on a new ``path`` from ``start``; the count of manoeuvres goes on."""
     remaining = abs(path.segments[0].distance)
-    return PathProgress(
-        path=path,
-        begin=start,
-        stand=start,
-        remaining=remaining,
-        reference=start,
-        upcoming=upcoming_stop(path, 0, remaining, context),
-        speed_delay=before.speed_delay,
-        direction=before.direction,
-        manoeuvres=before.manoeuvres,
-    )
+    upcoming = upcoming_stop(path, 0, remaining, context)
+    kept = PathProgress(speed_delay=before.speed_delay, direction=before.direction, manoeuvres=before.manoeuvres)
+    return kept._replace(path=path, begin=start, stand=start, remaining=remaining, reference=start, upcoming=upcoming)
 
 
 def track_path(progress: PathProgress, pose: Pose, speed: float, context: FollowingContext) -> PathProgress:
@@ -111,14 +103,8 @@ def track_path(progress: PathProgress, pose: Pose, speed: float, context: Follow
     upcoming = upcoming_stop(progress.path, progress.segment, remaining, context)
     if steers_for_next(upcoming, context):
         angle = math.atan(context.car.wheelbase * upcoming.standstill.next_curvature)
-    return progress._replace(
-        remaining=remaining,
-        reference=at,
-        lateral_error=error.lateral,
-        heading_error=error.heading,
-        front_wheel_angle=angle,
-        upcoming=upcoming,
-    )
+    progress = progress._replace(remaining=remaining, reference=at, front_wheel_angle=angle, upcoming=upcoming)
+    return progress._replace(lateral_error=error.lateral, heading_error=error.heading)
 
 
 def next_segment(progress: PathProgress, pose: Pose, context: FollowingContext) -> PathProgress:

@@ -98,11 +98,9 @@ def transition_state(jump: float, length: float, past: float, is_past: bool) -> 
     on = past + 0.5 * length
     share = on / length
     path_turned = 1.0 if is_past else 0.0
-    return PathReference(
-        jump * (share - path_turned),
-        jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past),
-        jump * (0.5 * on * share - path_turned * past),
-    )
+    lateral = jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past)
+    heading = jump * (0.5 * on * share - path_turned * past)
+    return PathReference(jump * (share - path_turned), lateral, heading)
 
 
 def transition_after(path: PlannedPath, segment: int, context: FollowingContext) -> CurvatureJoint:
@@ -218,12 +216,8 @@ def standstill_before(path: PlannedPath, segment: int, context: FollowingContext
     if not ends:
         late = _steering_while_moving(offset, next_curvature, before, START_ACCELERATION, context)
     same_gear = segment > 0 and not ends and path.segments[segment - 1].distance * path.segments[segment].distance > 0.0
-    return StandstillSteering(
-        max(early.time, settled),
-        late.time,
-        0.0 if same_gear or segment == 0 else early.overrun + late.overrun,
-        next_curvature,
-    )
+    overrun = 0.0 if same_gear or segment == 0 else early.overrun + late.overrun
+    return StandstillSteering(max(early.time, settled), late.time, overrun, next_curvature)
 
 
 class SteeringWhileMoving(NamedTuple):

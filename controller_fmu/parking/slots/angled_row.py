@@ -13,7 +13,7 @@ from typing import NamedTuple
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
 from controller_fmu.parking.map.free_space import Ray, is_free
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, end_point, length_of, start_point
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import (
     BAY_SIGMA,
@@ -132,8 +132,7 @@ def _corners(
 ) -> tuple[RoadCorner, ...]:
     """Return the corners at the road of sides and points beside the vehicle, in its frame."""
     corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
-    for number in range(MAX_LANDMARKS):
-        landmark = landmarks[number]
+    for landmark in landmarks:
         length = length_of(landmark)
         is_side = landmark.type == LandmarkType.SEGMENT and MIN_SIDE <= length < MAX_CAR
         if is_confirmed(landmark, params) and (is_side or landmark.type == LandmarkType.POINT):
@@ -144,16 +143,12 @@ def _corners(
             is_start = side * p.y < side * q.y
             end = p if is_start else q
             is_known = landmark.start_known if is_start else landmark.end_known
-            corner = RoadCorner(
-                end.x,
-                side * end.y,
-                landmark.heading - vehicle.heading,
-                params.gate * (landmark.hh + ASKEW_VARIANCE),
-                length,
-                landmark.start_known and landmark.end_known,
-                math.sqrt(landmark.xx + landmark.yy),
-                max(length, POST_WEIGHT) if is_known else POST_WEIGHT,
-            )
+            heading = landmark.heading - vehicle.heading
+            gate = params.gate * (landmark.hh + ASKEW_VARIANCE)
+            is_complete = landmark.start_known and landmark.end_known
+            sigma = math.sqrt(landmark.xx + landmark.yy)
+            weight = max(length, POST_WEIGHT) if is_known else POST_WEIGHT
+            corner = RoadCorner(end.x, side * end.y, heading, gate, length, is_complete, sigma, weight)
             if corner.deep > 0.0:
                 corners = corners[1:] + (corner,)
     return corners
@@ -163,19 +158,18 @@ def _side_heading(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
     """Return the direction [rad] against the path, modulo a right angle, that most sides on a line agree with."""
     most = 0.0
     heading = 0.0
-    for one in range(MAX_CORNERS):
+    for one in corners:
         total = 0.0
         sine = 0.0
         cosine = 0.0
-        for number in range(MAX_CORNERS):
-            corner = corners[number]
-            off = _square_angle(corner.heading - corners[one].heading)
-            agrees = off * off < corner.gate + corners[one].gate
+        for corner in corners:
+            off = _square_angle(corner.heading - one.heading)
+            agrees = off * off < corner.gate + one.gate
             if corner.length > 0.0 and _is_on_line(corner, line) and agrees:
                 total += corner.length
                 sine += math.sin(4.0 * corner.heading) / corner.gate
                 cosine += math.cos(4.0 * corner.heading) / corner.gate
-        if corners[one].length > 0.0 and total > most:
+        if one.length > 0.0 and total > most:
             most = total
             heading = 0.25 * math.atan2(sine, cosine)
     return heading if heading >= 0.0 else heading + 0.5 * PI
@@ -203,13 +197,11 @@ def _rotate(corner: RoadCorner, turn: float, side: float) -> RoadCorner:
     cos = math.cos(turn)
     off = corner.heading - turn
     tilt = _square_angle(off) if corner.length > 0.0 else 0.0
-    return corner._replace(
-        along=corner.along * cos + corner.deep * sin,
-        deep=corner.deep * cos - corner.along * sin,
-        weight=corner.weight if tilt * tilt <= corner.gate else 0.0,
-        is_flank=corner.length > 0.0 and abs(math.sin(off)) > abs(math.cos(off)),
-        tilt=tilt,
-    )
+    along = corner.along * cos + corner.deep * sin
+    deep = corner.deep * cos - corner.along * sin
+    weight = corner.weight if tilt * tilt <= corner.gate else 0.0
+    is_flank = corner.length > 0.0 and abs(math.sin(off)) > abs(math.cos(off))
+    return corner._replace(along=along, deep=deep, weight=weight, is_flank=is_flank, tilt=tilt)
 
 
 def _row_of(
@@ -269,17 +261,15 @@ def _line_of(corners: tuple[RoadCorner, ...], side: float) -> RoadLine:
     """Return the line through two corners that most others are on, and few before; of a single car along the path."""
     best = RoadLine(0.0, min(corner.deep if corner.weight > 0.0 else NO_MEMBER for corner in corners))
     most = 0.0
-    for one in range(MAX_CORNERS):
-        for other in range(MAX_CORNERS):
-            a = corners[one]
-            b = corners[other]
+    for a in corners:
+        for b in corners:
             if a.weight > 0.0 and b.weight > 0.0 and a.along - b.along > LINE_LENGTH:
                 slope = (a.deep - b.deep) / (a.along - b.along)
                 line = RoadLine(slope, a.deep - slope * a.along)
                 if abs(math.atan(slope)) < MAX_TILT:
                     score = 0.0
-                    for number in range(MAX_CORNERS):
-                        score += _line_score(corners[number], line, side)
+                    for corner in corners:
+                        score += _line_score(corner, line, side)
                     if score > most:
                         most = score
                         best = line

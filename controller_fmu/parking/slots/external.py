@@ -69,17 +69,13 @@ def _between_corners(given: ExternalSlot, vehicle: Pose) -> SlotCandidate:
     b = point_to_frame(given.ax if is_turned else given.bx, given.ay if is_turned else given.by, frame)
     front = 0.5 * side * b.y
     length = CAR_LENGTH if parallel else CAR_WIDTH
-    depth = depth_of(given)
-    return SlotCandidate(
-        type=SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR,
-        row=SlotRow(frame, side, slope=0.0 if parallel else math.tan(vehicle.heading - heading)),
-        behind=RowMember(-length, 0.0, 0.0, True, True, front, front),
-        ahead=RowMember(b.x, b.x + length, side * b.y, True, True, front, front),
-        front=front,
-        depth=depth if depth < UNKNOWN_DEPTH else UNKNOWN_DEPTH,
-        is_nose_in=given.kind == SlotKind.NOSE_IN,
-        is_external=True,
-    )
+    depth = min(depth_of(given), UNKNOWN_DEPTH)
+    kind = int(SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR)
+    row = SlotRow(frame, side, slope=0.0 if parallel else math.tan(vehicle.heading - heading))
+    behind = RowMember(-length, 0.0, 0.0, True, True, front, front)
+    ahead = RowMember(b.x, b.x + length, side * b.y, True, True, front, front)
+    candidate = SlotCandidate(kind, Reason.NONE, row, behind, ahead, front, depth)
+    return candidate._replace(is_nose_in=given.kind == SlotKind.NOSE_IN, is_external=True)
 
 
 def has_passed_external(candidate: SlotCandidate, sensor_x: float, vehicle: Pose) -> bool:

@@ -29,7 +29,10 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         deep = candidate.front + outline.half_width + kerb_shift(candidate, outline, params)
         heading = candidate.row.frame.heading
     else:
-        room = candidate.depth - 2.0 * outline.half_length - _distance_behind(candidate, outline, params)
+        left = candidate.depth - 2.0 * outline.half_length
+        most = max(most_overhang(candidate, outline, params), 0.0)
+        # in a slot hardly deeper than the vehicle: half way between the least distance and the largest overhang
+        room = left - min(params.distance_behind, 0.5 * (params.least_behind + most + left))
         uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.row.slope == 0.0 else 0.0
         deep = candidate.front + outline.half_length + min(0.5 * uneven, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
@@ -52,16 +55,6 @@ def least_depth(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
     if candidate.type == SlotType.PARALLEL:
         return 2.0 * outline.half_width
     return 2.0 * outline.half_length + params.least_behind - most_overhang(candidate, outline, params)
-
-
-def _distance_behind(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:
-    """Return the distance [m] to the end of a slot across the road at which the vehicle is to stand.
-
-    In a slot hardly deeper than the vehicle it stands half way between the least distance and the largest overhang.
-    """
-    left = candidate.depth - 2.0 * outline.half_length
-    most = max(most_overhang(candidate, outline, params), 0.0)
-    return min(params.distance_behind, 0.5 * (params.least_behind + most + left))
 
 
 def most_overhang(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> float:

@@ -121,12 +121,11 @@ def away_from_vehicle(landmark: Landmark, outline: VehicleOutline, vehicle: Pose
     distance = landmark_distance(landmark, vehicle, outline)
     if distance >= START_CLEARANCE:
         return landmark
-    x = vehicle.x + outline.centre_ahead * math.cos(vehicle.heading)
-    y = vehicle.y + outline.centre_ahead * math.sin(vehicle.heading)
-    nx = landmark.x - x
-    ny = landmark.y - y
+    centre = point_from_frame(outline.centre_ahead, 0.0, vehicle)
+    nx = landmark.x - centre.x
+    ny = landmark.y - centre.y
     if landmark.type == LandmarkType.SEGMENT:
-        away = -1.0 if offset_of(landmark, x, y) > 0.0 else 1.0
+        away = -1.0 if offset_of(landmark, centre.x, centre.y) > 0.0 else 1.0
         nx = -away * math.sin(landmark.heading)
         ny = away * math.cos(landmark.heading)
     length = max(math.sqrt(nx * nx + ny * ny), START_CLEARANCE)

@@ -23,11 +23,7 @@ from controller_fmu.parking.state import ParkingMemory
 from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
 
-PHASE_OF_STATE = (
-    ParkingPhase.STANDBY,
-    ParkingPhase.STANDBY,
-    ParkingPhase.STANDBY,
-    ParkingPhase.STANDBY,
+PHASE_OF_STATE = (ParkingPhase.STANDBY,) * 4 + (
     ParkingPhase.PRE_STEER,
     ParkingPhase.PATH_TRACKING,
     ParkingPhase.STOP,

@@ -68,10 +68,8 @@ def wait_for_change(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
     before = obstacle_count(memory)
     memory = forget_what_left(memory, inputs, params)
     if obstacle_count(memory) < before:
-        memory = memory._replace(
-            perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS),
-            plan=memory.plan._replace(plans=memory.plan.plans - 1),
-        )
+        memory = memory._replace(perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS))
+        memory = memory._replace(plan=memory.plan._replace(plans=memory.plan.plans - 1))
         memory = begin_plan(memory)
     return memory
 
@@ -291,11 +289,8 @@ def with_way_out(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     before = memory.perception.local_map.landmarks
     memory = with_landmarks(memory, with_neighbours(before, box, side, pose, params.car, params.mapping))
     goal = pose_on_road(box, side, pose, vehicle_outline(params.car, params.plan.curvature_fraction))
-    return memory._replace(
-        strategy=Strategy.PULL_OUT,
-        plan=memory.plan._replace(way_out=goal),
-        search=SearchProgress(pose=pose, stand=pose),
-    )
+    memory = memory._replace(strategy=Strategy.PULL_OUT, search=SearchProgress(pose=pose, stand=pose))
+    return memory._replace(plan=memory.plan._replace(way_out=goal))
 
 
 def _with_plan(

@@ -118,5 +118,4 @@ def _with_segment(
     found = segment_between(p, q, Point(pose.x, pose.y), variance, variance)
     ends_at_b = along_of(found, q.x, q.y) > 0.0
     new = found._replace(start_known=is_closed or ends_at_b, end_known=is_closed or not ends_at_b)
-    new = new._replace(confirmations=params.confirmations)
-    return replace_landmark(landmarks, free_index(landmarks), new)
+    return replace_landmark(landmarks, free_index(landmarks), new._replace(confirmations=params.confirmations))

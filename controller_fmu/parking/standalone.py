@@ -1,4 +1,4 @@
-"""The parking system as a controller of its own: its work arrays would weigh on the memory of the others."""
+"""The parking system, a controller of its own until it replaces the others: its arrays would weigh on their memory."""
 
 import sys
 
@@ -28,4 +28,3 @@ MODEL = Model(
     store=PlanningWork,
     charts=(Chart("apa.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
 )
-"""A controller of its own until it replaces the other two: the planner's work arrays would weigh on their memory."""

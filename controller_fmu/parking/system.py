@@ -116,22 +116,19 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         fault = input_fault(inputs)
         fault = Reason.TIMEOUT if fault == Reason.NONE and late else fault
         return memory._replace(reason=fault) if fault != Reason.NONE else memory
-    phase = PhaseExpectation(
-        state != ParkingState.PLANNING,
-        int(memory.progress.direction) if state == ParkingState.DRIVING else 0,
-        state in (ParkingState.STEERING, ParkingState.STRAIGHTENING),
-    )
-    monitor = params.monitor
+    direction = int(memory.progress.direction) if state == ParkingState.DRIVING else 0
+    is_steering = state in (ParkingState.STEERING, ParkingState.STRAIGHTENING)
+    phase = PhaseExpectation(state != ParkingState.PLANNING, direction, is_steering)
     speed = abs(inputs.measured_speed)
     stands = speed <= params.threshold.standstill
     common = watch(memory.clocks.common, inputs, phase, memory.steering_wheel_angle, dt_ns, params)
     is_blocked = memory.verdict.is_blocked
-    clocks = advance_clocks(memory.clocks, common, stands, is_blocked, speed > monitor.over_speed, dt_ns)
+    clocks = advance_clocks(memory.clocks, common, stands, is_blocked, speed > params.monitor.over_speed, dt_ns)
     spare = 0 if memory.strategy == Strategy.SLOT else max_manoeuvres(memory, params) - params.limit.manoeuvres
     reason = memory.reason
     if reason == Reason.NONE:
         manoeuvres = memory.progress.manoeuvres - spare
-        reason = fault_reason(clocks, inputs, phase, manoeuvres, monitor.over_speed_time, params)
+        reason = fault_reason(clocks, inputs, phase, manoeuvres, params.monitor.over_speed_time, params)
     if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
@@ -145,21 +142,15 @@ def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
         speeds = speed_tracking(memory, inputs, params)
         memory = memory._replace(progress=learn_speed_delay(memory.progress, speeds, params.sample_time, context))
     direction = sign(memory.progress.path.segments[memory.progress.segment].distance)
-    angle = inputs.steering_wheel_angle
-    if memory.state == ParkingState.STEERING:
-        angle = memory.steering_wheel_angle
-    front_wheel_angle = angle / params.car.steering.ratio
+    angle = memory.steering_wheel_angle if memory.state == ParkingState.STEERING else inputs.steering_wheel_angle
+    curvature = math.tan(angle / params.car.steering.ratio) / params.car.wheelbase
     speed = abs(inputs.measured_speed)
-    motion = VehicleMotion(
-        inputs.odometry,
-        direction,
-        speed if speed > params.threshold.standstill else 0.0,
-        math.tan(front_wheel_angle) / params.car.wheelbase,
-        max(memory.progress.upcoming.left, 0.0),
-        params.monitor.brake_delay,
-        params.monitor.brake_deceleration,
-        memory.progress.stand,
-    )
+    speed = speed if speed > params.threshold.standstill else 0.0
+    left = max(memory.progress.upcoming.left, 0.0)
+    delay = params.monitor.brake_delay
+    deceleration = params.monitor.brake_deceleration
+    stand = memory.progress.stand
+    motion = VehicleMotion(inputs.odometry, direction, speed, curvature, left, delay, deceleration, stand)
     outline = vehicle_outline(params.car, 1.0)
     verdict = monitor_collision(
         motion, outline, memory.perception.local_map.landmarks, memory.perception.echoes, params.monitor, params.mapping
@@ -224,7 +215,8 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
     speeds = speed_tracking(memory, inputs, params)
-    lost = is_lost(progress, params)
+    is_aside = abs(progress.lateral_error) > params.monitor.corridor
+    lost = is_aside or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
     is_obstructed = memory.verdict.free_distance < NO_LIMIT
     blocked_long = is_obstructed and seconds(memory.clocks.blocked) > patience
@@ -248,12 +240,6 @@ def speed_tracking(memory: ParkingMemory, inputs: ParkingSystemInput, params: Pa
     if is_driver_driving(params):
         return SpeedTracking(measured, measured, params.drive.driver_reaction)
     return SpeedTracking(measured, abs(memory.speed), max(params.drive.brake_delay, memory.progress.speed_delay))
-
-
-def is_lost(progress: PathProgress, params: ParkingParams) -> bool:
-    """Return whether the vehicle is too far from its path."""
-    is_aside = abs(progress.lateral_error) > params.monitor.corridor
-    return is_aside or abs(progress.heading_error) > params.monitor.corridor_heading
 
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
@@ -309,16 +295,11 @@ def _with_slot_shown(memory: ParkingMemory, pose: Pose) -> ParkingMemory:
     if not memory.search.resumes:
         slot_filter = begin_slot_filter(memory.search.slot)
         memory = memory._replace(search=memory.search._replace(pose=pose, slot_filter=slot_filter))
-    return memory._replace(
-        strategy=Strategy.SLOT,
-        reason=Reason.NONE,
-        search=memory.search._replace(stand=pose, waited=0, resumes=False),
-        perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS),
-        plan=PlanProgress(),
-        progress=PathProgress(speed_delay=memory.progress.speed_delay),
-        verdict=MonitorVerdict(),
-        clocks=FaultClocks(MonitorState(wheel=memory.clocks.common.wheel)),
-    )
+    memory = memory._replace(search=memory.search._replace(stand=pose, waited=0, resumes=False))
+    memory = memory._replace(perception=memory.perception._replace(echoes=(EchoObstacle(),) * MAX_SENSORS))
+    memory = memory._replace(progress=PathProgress(speed_delay=memory.progress.speed_delay))
+    memory = memory._replace(clocks=FaultClocks(MonitorState(wheel=memory.clocks.common.wheel)))
+    return memory._replace(strategy=Strategy.SLOT, reason=Reason.NONE, plan=PlanProgress(), verdict=MonitorVerdict())
 
 
 def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:

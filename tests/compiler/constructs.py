@@ -747,6 +747,17 @@ def _marked(big: Big, at: Point, value: float) -> Big:
     return big._replace(at=Point(big.at.y, at.x), row=row[1:] + (big.at.x + value,), default=at.y)
 
 
+def kept_from_argument(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
+    return _made_anew(_made_anew(Big(Point(x, y), default=y), x, p), y, q)
+
+
+def _made_anew(big: Big, value: float, back: bool) -> Big:
+    if back:
+        return big
+    made = Big(default=value, points=(big.at, big.points[0]))
+    return made._replace(at=big.at, default=big.default)
+
+
 def changed_by_itself(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
     big = Big(Point(x, y), default=y)
     big = _marked(big, big.at, big.default)

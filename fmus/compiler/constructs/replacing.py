@@ -8,7 +8,7 @@ from fmus.compiler.target.access import is_at
 from fmus.compiler.target.aggregates import coerce
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.names import member_name
-from fmus.compiler.target.storage import put, put_members
+from fmus.compiler.target.storage import hoist, put, put_members
 from fmus.compiler.target.values import Place, Value
 
 
@@ -21,8 +21,11 @@ def lower_replace(body: FunctionBody, node: ast.Call, value: Value) -> Value:
         if is_at(body, value, place):
             put_members(body, place, members)
             return
+        # what the copy is written over is read first: a member that lies there already would need no statement
+        there = {name: item for name, item in members.items() if is_at(body, item, place.member(name))}
+        kept = members | {name: hoist(body, item, name) for name, item in there.items()}
         put(body, place, value)
-        for name, item in members.items():
+        for name, item in kept.items():
             put(body, place.member(name), item)
 
     return Value(value.kind, fill=fill, base=value if value.place else None)

@@ -170,7 +170,7 @@ def test_different_numbers_of_samples_are_refused() -> None:
 
 def test_a_spread_has_exactly_one_distribution() -> None:
     runs: Any = {"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}}
-    with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
+    with pytest.raises(ValueError, match="exactly one of uniform, normal, choice"):
         StudyFile(name="a", scenario="b", runs=runs)
 
 

@@ -4,12 +4,11 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from orchestrator.inputs.scenario.requirements import Condition
+from orchestrator.inputs.scenario.requirements import ConditionLimit
 from orchestrator.inputs.text.errors import BadInput, format_value
 from orchestrator.testing.steptest.response import RESPONSES
 
 Number = float | str | bool
-BOUNDS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
 OPERATORS = ("always", "eventually", "until", "response")
 
 
@@ -17,7 +16,7 @@ class _StepTestPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
 
-class Limit(_StepTestPart):
+class Limit(_StepTestPart, ConditionLimit):
     """A limit on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs``, ``equals``."""
 
     signal: str = ""
@@ -29,21 +28,8 @@ class Limit(_StepTestPart):
 
     @model_validator(mode="after")
     def _one(self) -> "Limit":
-        given = [name for name in BOUNDS if getattr(self, name) is not None]
-        if len(given) != 1:
-            raise BadInput(f"expected exactly one of {', '.join(BOUNDS)}, not {', '.join(given) or 'none'}")
+        _ = self.condition
         return self
-
-    @property
-    def condition(self) -> Condition:
-        """Which of the four it is."""
-        return next(name for name in BOUNDS if getattr(self, name) is not None)
-
-    @property
-    def value(self) -> Number:
-        """Number, text with a unit, name of a state, or truth value."""
-        value: Number = getattr(self, self.condition)
-        return value
 
 
 class Reaction(_StepTestPart):

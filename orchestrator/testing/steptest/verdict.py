@@ -144,7 +144,7 @@ class _Judge:
 
     def _measure(self, limit: Limit) -> LimitMargins:
         name = self._name(limit.signal or self._item.signal)
-        value = self._value(limit.value, name)
+        value = self._value(limit.limit, name)
         return LimitMargins(name, value, CONDITIONS[limit.condition].margin(self._recording.signals[name], value))
 
     def _response(self, asked: Reaction) -> Check:
@@ -156,7 +156,7 @@ class _Judge:
         band = number(asked.band, "1", file=self._file, key=self._item.id)
         values = self._recording.signals[name][rows]
         unit = measured.unit or self._recording.variables[name].signal.unit
-        limit = number(asked.limit.value, unit, file=self._file, key=self._item.id)
+        limit = number(asked.limit.limit, unit, file=self._file, key=self._item.id)
         value = math.nan
         if len(values) and np.isfinite(values).all():
             value = measured.of(Response(t[rows], values, self._value(asked.to, name), band))

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 
@@ -16,6 +16,16 @@ MOST_RUNS = 100_000_000
 
 class _StudyPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
+
+
+class _OneOf(_StudyPart):
+    """What is given by exactly one of its keys."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if len(self.model_dump(exclude_none=True)) != 1:
+            raise BadInput(f"expected exactly one of {', '.join(type(self).model_fields)}")
+        return self
 
 
 class Range(_StudyPart):
@@ -40,7 +50,7 @@ Values = Annotated[
 """Values of a parameter of a grid."""
 
 
-class Distribution(_StudyPart):
+class Distribution(_OneOf):
     """A distribution: exactly one of the three."""
 
     uniform: tuple[float | str, float | str] | None = None
@@ -49,12 +59,6 @@ class Distribution(_StudyPart):
     """Mean and standard deviation; cut off where the parameter's range ends."""
     choice: list[Any] | None = Field(default=None, min_length=1)
     """Any of these, equally likely."""
-
-    @model_validator(mode="after")
-    def _one(self) -> "Distribution":
-        if sum(item is not None for item in (self.uniform, self.normal, self.choice)) != 1:
-            raise BadInput("expected exactly one of uniform, normal and choice")
-        return self
 
 
 class Samples(_StudyPart):
@@ -95,7 +99,7 @@ class Axes(_StudyPart):
     """One map for each value of this parameter."""
 
 
-class MeasureOf(_StudyPart):
+class MeasureOf(_OneOf):
     """One number of one signal over a run: exactly one of these, with the name of the signal."""
 
     last: str | None = None
@@ -106,12 +110,6 @@ class MeasureOf(_StudyPart):
     smallest: str | None = None
     travel: str | None = None
     """Sum of the absolute changes."""
-
-    @model_validator(mode="after")
-    def _one(self) -> "MeasureOf":
-        if len(self.model_dump(exclude_none=True)) != 1:
-            raise BadInput(f"expected exactly one of {', '.join(MeasureOf.model_fields)}")
-        return self
 
 
 class StudyFile(_StudyPart):

@@ -10,6 +10,7 @@ from controller_fmu.parking.geometry.frames import planar_distance, point_to_fra
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.chain_update import put_facing, put_post
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
+from controller_fmu.parking.map.free_space import path_curvature
 from controller_fmu.parking.map.local_map import range_by_map, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
@@ -47,7 +48,7 @@ from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
-from controller_fmu.parking.slots.row import find_row
+from controller_fmu.parking.slots.row import RoadBend, find_row
 from controller_fmu.parking.slots.slot_filter import (
     SlotFilter,
     count_absent,
@@ -58,6 +59,7 @@ from controller_fmu.parking.slots.slot_filter import (
 )
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress, with_landmarks
 from modelkit.car import car_length
+from modelkit.vocabulary import Pose
 
 YIELD_TIME = 3.0
 """The vehicle stands for this long [s] after it last had to yield: a pedestrian of 0.6 m/s passes it in that time."""
@@ -307,7 +309,8 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
     row = find_angled_row(local_map.landmarks, rays, local_map.pose, side, params.mapping)
     if row.used == 0:
-        row = find_row(local_map.landmarks, local_map.pose, side, params.mapping)
+        bend = _bend(search, path_curvature(rays), local_map.pose, side)
+        row = find_row(local_map.landmarks, local_map.pose, side, bend, params.mapping)
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     found = find_slot(row, local_map.landmarks, rays, outline, params.slot, params.mapping)
     corner = row_point(found.row, found.ahead.start, found.ahead.start_front)
@@ -320,6 +323,16 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
     if is_same_gap(found, search.refused):
         return search
     return search._replace(offered=with_offer(search.offered, found))
+
+
+def _bend(search: SearchProgress, curvature: float, vehicle: Pose, side: float) -> RoadBend:
+    """Return the bend of a row beside a path of ``curvature`` [1/m], at the slot found last on this side, if any."""
+    for slot in search.offered:
+        if slot.type != SlotType.NONE and slot.row.side == side:
+            middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
+            at = point_to_frame(middle.x, middle.y, vehicle)
+            return RoadBend(curvature / (1.0 - curvature * at.y), at.x)
+    return RoadBend(curvature)
 
 
 def _with_external(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> SearchProgress:

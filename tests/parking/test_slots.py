@@ -8,7 +8,7 @@ from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.map.facing_surface import point_between
-from controller_fmu.parking.map.free_space import MAX_RAYS, FreeSpace, Ray
+from controller_fmu.parking.map.free_space import MAX_RAYS, FreeSpace, Ray, path_curvature
 from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.params import MappingParams
@@ -28,6 +28,7 @@ from controller_fmu.parking.slots.goal import goal_pose, overhang_of
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import (
     MAX_MEMBERS,
+    RoadBend,
     RowMember,
     SlotRow,
     find_row,
@@ -50,7 +51,7 @@ def slot_after(
     start = Pose(-9.0, CAR.width / 2 + lateral, 0.0)
     for _, pose, readings in drive_past(boxes, start, end + 9.0, seed):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
-    row = find_row(local_map.landmarks, pose, -1.0, params)
+    row = find_row(local_map.landmarks, pose, -1.0, RoadBend(), params)
     slot = SlotParams(wanted=wanted)
     return find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, slot, params)
 
@@ -116,7 +117,7 @@ def test_of_a_car_that_is_being_passed_the_corner_behind_is_known(side: float) -
     boxes = [Box(x, 0.9 * side, 0.0, 4.4, 1.8) for x in (-2.2, 8.4)]
     for _, pose, readings in drive_past(boxes, Pose(-9.0, -side * (CAR.width / 2 + 1.0), 0.0), 14.2, 1, dropout=0.0):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
-    row = find_row(local_map.landmarks, pose, side, params)
+    row = find_row(local_map.landmarks, pose, side, RoadBend(), params)
     ends = [(member.start_known, member.end_known) for member in row.members[: row.used]]
     assert ends == [(True, False), (True, True)]
 
@@ -131,7 +132,7 @@ def test_a_wall_across_the_road_shows_its_direction() -> None:
         local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
         for _, pose, readings in drive_past(boxes, Pose(-9.0, CAR.width / 2 + 1.0, 0.0), 14.0, 1, dropout=0.0):
             local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
-        turns.append(math.degrees(find_row(local_map.landmarks, pose, -1.0, params).frame.heading))
+        turns.append(math.degrees(find_row(local_map.landmarks, pose, -1.0, RoadBend(), params).frame.heading))
     assert turns[0] > 2.5
     assert abs(turns[1]) < 0.5 * turns[0]
 
@@ -244,9 +245,9 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
 
 def test_a_car_that_is_still_being_passed_is_no_pillar() -> None:
     begun = side(0.0, -1.5, 0.0, 0.8)
-    passed = side_as_member(begun, Pose(), -1.0, MappingParams())
+    passed = side_as_member(begun, SlotRow(), -1.0, MappingParams())
     assert passed.start_length == passed.end_length == pytest.approx(0.8)
-    member = side_as_member(begun._replace(end_known=False), Pose(), -1.0, MappingParams())
+    member = side_as_member(begun._replace(end_known=False), SlotRow(), -1.0, MappingParams())
     assert member.start_length == member.end_length == 0.0
     assert not is_too_short_for_car(member.start_length)
 
@@ -274,7 +275,7 @@ def test_a_pillar_too_short_for_a_side_bounds_the_gap() -> None:
     behind = pillar._replace(y=-4.5)
     for posts, end in (([], -0.9), ([pillar], 0.0), ([behind], -0.9)):
         landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 2 - len(posts)))
-        row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+        row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, RoadBend(), MappingParams())
         slot = find_slot(row, landmarks, FREE_RAYS, OUTLINE, SlotParams(), MappingParams())
         edge = row_point(slot.row, slot.behind.end, slot.front)
         assert edge.x == pytest.approx(end, abs=0.01)
@@ -285,7 +286,7 @@ def test_a_car_whose_front_a_hitch_hides_is_a_neighbour() -> None:
     sensed = [(-1.9, -1.5), (-1.0, -1.05), (-0.1, -1.5)]
     points = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in sensed]
     landmarks = (*points, side(4.1, -1.5, 0.0, 1.8), *(Landmark(),) * (MAX_LANDMARKS - 4))
-    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, RoadBend(), MappingParams())
     assert row.used == 2
     car = row.members[1]
     assert (car.start + 8.0, car.end + 8.0, car.front) == pytest.approx((-1.9, -0.1, 1.5))
@@ -296,7 +297,7 @@ def test_of_the_parts_between_posts_the_one_passed_last_counts() -> None:
     cars = [side(-3.7, -1.5, 0.0, 1.8), side(4.2, -1.5, 0.0, 1.8)]
     posts = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in ((-1.0, -1.1), (0.4, -1.5))]
     landmarks = (*cars, *posts, *(Landmark(),) * (MAX_LANDMARKS - 4))
-    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, MappingParams())
+    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, RoadBend(), MappingParams())
     slot = find_slot(row, landmarks, FREE_RAYS, OUTLINE, SlotParams(), MappingParams())
     assert row_point(slot.row, slot.behind.end, slot.front).x == pytest.approx(0.4, abs=0.01)
     assert row_point(slot.row, slot.ahead.start, slot.front).x == pytest.approx(3.3, abs=0.01)
@@ -311,7 +312,7 @@ def side(x: float, y: float, turn: float, length: float) -> Landmark:
 
 def row_beside(sides: list[Landmark], heading: float) -> SlotRow:
     rest = (Landmark(),) * (MAX_LANDMARKS - len(sides))
-    return find_row((*sides, *rest), Pose(0.0, 2.0, math.radians(heading)), -1.0, MappingParams())
+    return find_row((*sides, *rest), Pose(0.0, 2.0, math.radians(heading)), -1.0, RoadBend(), MappingParams())
 
 
 def test_a_row_is_found_on_a_slanting_pass() -> None:
@@ -320,6 +321,29 @@ def test_a_row_is_found_on_a_slanting_pass() -> None:
     row = row_beside([side(0.0, 0.0, 1.0, 4.4), side(-10.0, 0.0, -1.0, 4.4), wall], 7.5)
     assert row.used == 2
     assert math.degrees(row.frame.heading) == pytest.approx(0.0, abs=0.5)
+
+
+@pytest.mark.parametrize("curvature", [1.0 / 30.0, -1.0 / 30.0])
+@pytest.mark.parametrize("at", [-4.0, 3.0])
+def test_a_row_along_a_bend_has_the_direction_of_the_road_at_the_slot(curvature: float, at: float) -> None:
+    """Three cars behind the vehicle and one ahead: their mean heading is that of the road far behind the slot."""
+    sides = []
+    for along in (-17.0, -11.5, -6.0, 5.0):
+        turn = curvature * along
+        sides.append(side(math.sin(turn) / curvature, (1.0 - math.cos(turn)) / curvature, math.degrees(turn), 4.4))
+    rest = (Landmark(),) * (MAX_LANDMARKS - len(sides))
+    bend = RoadBend(curvature, at)
+    row = find_row((*sides, *rest), Pose(0.0, 2.0, 0.0), -1.0, bend, MappingParams())
+    assert row.used == 4
+    beside_slot = row_point(row, at, row.members[0].front)
+    assert row.frame.heading == pytest.approx(math.asin(curvature * beside_slot.x), abs=math.radians(0.5))
+
+
+def test_the_curvature_of_the_path_follows_from_the_rays() -> None:
+    poses = [(math.sin(turn) * 30.0, 30.0 * (1.0 - math.cos(turn)), turn) for turn in (0.2, 0.3, 0.5)]
+    rays = [Ray(SensorPose(x, y, math.sin(turn), -math.cos(turn)), 1.0) for x, y, turn in poses]
+    assert path_curvature((*(Ray(),) * (MAX_RAYS - len(rays)), *rays)) == pytest.approx(1.0 / 30.0, rel=0.01)
+    assert path_curvature((Ray(),) * MAX_RAYS) == 0.0
 
 
 def test_a_car_that_has_left_its_row_does_not_turn_it() -> None:
@@ -400,7 +424,7 @@ def test_beside_one_car_there_is_a_slot_where_the_driver_takes_one(open_ended: b
     start = Pose(-9.0, CAR.width / 2 + 1.0, 0.0)
     for _, pose, readings in drive_past(bays(2.6, 1)[:2], start, 13.0, 1):
         local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
-    row = find_row(local_map.landmarks, pose, -1.0, params)
+    row = find_row(local_map.landmarks, pose, -1.0, RoadBend(), params)
     wanted = SlotParams(open_ended=open_ended)
     slot = find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, wanted, params)
     assert slot.type == (SlotType.PERPENDICULAR if open_ended else SlotType.NONE)

@@ -1,5 +1,6 @@
 """Free space: the last echoes of both flanks, as rays. Inside a ray's cone nothing lies nearer than its echo."""
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import planar_distance
@@ -29,6 +30,18 @@ class FreeSpace(NamedTuple):
 
     right: tuple[Ray, ...] = (Ray(),) * MAX_RAYS
     left: tuple[Ray, ...] = (Ray(),) * MAX_RAYS
+
+
+def path_curvature(rays: tuple[Ray, ...]) -> float:
+    """Return the mean curvature [1/m], left positive, of the path on which the rays of one side were measured."""
+    last = rays[MAX_RAYS - 1].sensor
+    for ray in rays:
+        first = ray.sensor
+        length = planar_distance(first.x, first.y, last.x, last.y)
+        if ray.range > 0.0 and length > 0.0:
+            cross = first.axis_x * last.axis_y - first.axis_y * last.axis_x
+            return math.atan2(cross, first.axis_x * last.axis_x + first.axis_y * last.axis_y) / length
+    return 0.0
 
 
 def is_next_ray(last: Ray, ray: Ray) -> bool:

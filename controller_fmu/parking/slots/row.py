@@ -13,7 +13,7 @@ from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, Landmar
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_WIDTH, CAR_WIDTH_SIGMA, MappingParams
 from modelkit.geometry import Point
-from modelkit.maths import PI, wrap_angle
+from modelkit.maths import PI, clamp, wrap_angle
 from modelkit.vocabulary import Pose
 
 MAX_MEMBERS = 8
@@ -62,6 +62,15 @@ class RowMember(NamedTuple):
     """Log-likelihood ratio of a gap between two cars in it, by its echoes."""
 
 
+class RoadBend(NamedTuple):
+    """The road beside a row is an arc that touches the direction of the row's frame at ``at``."""
+
+    curvature: float = 0.0
+    """[1/m], left positive."""
+    at: float = 0.0
+    """Along the row [m]."""
+
+
 class SlotRow(NamedTuple):
     """A row in its own frame: x along the road as the vehicle drives, y across it; ``side``: 1 left, -1 right.
 
@@ -79,6 +88,7 @@ class SlotRow(NamedTuple):
     """Where the line of the cars' corners at the road is at x = 0, across an angled row [m]."""
     heading_sigma: float = 0.0
     """Standard deviation [rad] of the frame's heading; 0: it is given."""
+    bend: RoadBend = RoadBend()
 
 
 class RowDirection(NamedTuple):
@@ -88,12 +98,14 @@ class RowDirection(NamedTuple):
     sigma: float
 
 
-def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:
-    """Return the row on one side (1 left, -1 right) of a vehicle that drives along it.
+def find_row(
+    landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, bend: RoadBend, params: MappingParams
+) -> SlotRow:
+    """Return the row on one side (1 left, -1 right) of a vehicle that drives along it, where the road has a ``bend``.
 
     Its direction follows first from the headings of the sides alone: only along it shows which stand in one line.
     """
-    by_headings = _row_in_direction(landmarks, SlotRow(vehicle, side), params)
+    by_headings = _row_in_direction(landmarks, SlotRow(vehicle, side, bend=bend), params)
     return _row_in_direction(landmarks, by_headings, params)
 
 
@@ -101,31 +113,25 @@ def _row_in_direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: Map
     """Return the row in its frame turned into the direction that the landmarks and its members show."""
     direction = _direction(landmarks, row, params)
     frame = row.frame._replace(heading=row.frame.heading + direction.turn)
-    return _members(landmarks, frame, row.side, params)._replace(heading_sigma=direction.sigma)
+    return _members(landmarks, SlotRow(frame, row.side, heading_sigma=direction.sigma, bend=row.bend), params)
 
 
-def side_as_member(landmark: Landmark, frame: Pose, side: float, params: MappingParams) -> RowMember:
-    """Return a landmark as a member of a row in ``frame``; length 0 if it is none on this ``side`` (1, -1)."""
+def side_as_member(landmark: Landmark, row: SlotRow, side: float, params: MappingParams) -> RowMember:
+    """Return a landmark as a member of a row, or of what is across the road; length 0: of none on ``side`` (1, -1)."""
     if landmark.type != LandmarkType.SEGMENT or not is_confirmed(landmark, params) or length_of(landmark) < MIN_SIDE:
-        return RowMember()
-    along = frame.heading if side < 0.0 else frame.heading + math.pi
-    if abs(wrap_angle(landmark.heading - along)) > MAX_TILT:
         return RowMember()
     a = start_point(landmark)
     b = end_point(landmark)
-    p = point_to_frame(a.x, a.y, frame)
-    q = point_to_frame(b.x, b.y, frame)
-    front = side * 0.5 * (p.y + q.y)
-    if front < 0.0:
-        return RowMember()
+    p = point_to_frame(a.x, a.y, row.frame)
+    q = point_to_frame(b.x, b.y, row.frame)
     first = p if p.x < q.x else q
     last = q if p.x < q.x else p
     forward = p.x < q.x
     length = last.x - first.x if landmark.start_known and landmark.end_known else 0.0
-    return RowMember(
+    member = RowMember(
         first.x,
         last.x,
-        front,
+        side * 0.5 * (p.y + q.y),
         landmark.start_known if forward else landmark.end_known,
         landmark.end_known if forward else landmark.start_known,
         side * first.y,
@@ -136,6 +142,26 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
         length,
         landmark.gap_evidence,
     )
+    turn = _turn_to_road(landmark.heading, row, side, 0.5 * (p.x + q.x))
+    return member if abs(turn) <= MAX_TILT and _front_from_road(member, row, side) >= 0.0 else RowMember()
+
+
+def road_heading(row: SlotRow, along: float) -> float:
+    """Return the heading [rad] of the road ``along`` a row [m]."""
+    return row.frame.heading + math.asin(clamp(row.bend.curvature * (along - row.bend.at), -1.0, 1.0))
+
+
+def _turn_to_road(heading: float, row: SlotRow, side: float, along: float) -> float:
+    """Return by how much [rad] a side of this ``heading`` on a ``side`` of the road is turned against that."""
+    road = road_heading(row, along)
+    return wrap_angle(heading - (road if side < 0.0 else road + math.pi))
+
+
+def _front_from_road(member: RowMember, row: SlotRow, side: float) -> float:
+    """Return the front [m] in the middle of a member, which may be of several cars, as on a straight road."""
+    along = 0.5 * (member.start + member.end) - row.bend.at
+    turn = road_heading(row, along + row.bend.at) - row.frame.heading
+    return 0.5 * (member.start_front + member.end_front) - side * along * math.tan(0.5 * turn)
 
 
 def corner_of(landmark: Landmark, is_start: bool, row: SlotRow, params: MappingParams) -> Point:
@@ -161,26 +187,27 @@ def _hidden_front(corners: tuple[Point, ...], hitch: Point) -> RowMember:
     return RowMember(first.x, last.x, 0.5 * (first.y + last.y), True, True, first.y, last.y)
 
 
-def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
-    """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
-    row = SlotRow(frame, side)
+def _members(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> SlotRow:
+    """Return a row with its members from ahead to behind, overlapping sides joined."""
     corners: tuple[Point, ...] = tuple(
         corner_of(landmarks[number // 2], number % 2 == 0, row, params) for number in range(2 * MAX_LANDMARKS)
     )
     sides: tuple[RowMember, ...] = tuple(
         _hidden_front(corners, corners[2 * number])
         if landmarks[number].type == LandmarkType.POINT
-        else side_as_member(landmarks[number], frame, side, params)
+        else side_as_member(landmarks[number], row, row.side, params)
         for number in range(MAX_LANDMARKS)
     )
-    nearest = min(member.front if member.end > member.start else NO_MEMBER for member in sides)
+    fronts: tuple[float, ...] = tuple(
+        _front_from_road(member, row, row.side) if member.end > member.start else NO_MEMBER for member in sides
+    )
+    limit = min(min(fronts) + ROW_DEPTH, 0.5 * NO_MEMBER)
     last = NO_MEMBER
     for _ in range(MAX_LANDMARKS):
         best = RowMember(end=-NO_MEMBER)
-        for member in sides:
-            is_of_row = member.end > member.start and member.front < nearest + ROW_DEPTH
-            if is_of_row and best.end < member.end < last:
-                best = member
+        for number in range(MAX_LANDMARKS):
+            if fronts[number] < limit and best.end < sides[number].end < last:
+                best = sides[number]
         if best.end <= -NO_MEMBER:
             return row
         last = best.end
@@ -221,13 +248,14 @@ def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingPar
     total = 0.0
     turn = 0.0
     for side in (row.side, -row.side):
-        along = row.frame.heading if side < 0.0 else row.frame.heading + math.pi
-        sides = tuple(side_as_member(landmarks[number], row.frame, side, params) for number in range(MAX_LANDMARKS))
+        sides = tuple(side_as_member(landmarks[number], row, side, params) for number in range(MAX_LANDMARKS))
         for number in range(MAX_LANDMARKS):
             if sides[number].end > sides[number].start:
                 weight = _side_weight(landmarks, sides, number)
                 total += weight
-                turn += weight * wrap_angle(landmarks[number].heading - along)
+                turn += weight * _turn_to_road(
+                    landmarks[number].heading, row, side, 0.5 * (sides[number].start + sides[number].end)
+                )
     if total <= 0.0:
         return RowDirection(0.0, MAX_TILT)
     line = _line_direction(row)
@@ -276,7 +304,8 @@ def _line_direction(row: SlotRow) -> RowDirection:
     for number in range(MAX_MEMBERS):
         member = row.members[number]
         if number < row.used:
-            sums = add_point(sums, 0.5 * (member.start + member.end), row.side * member.front)
+            front = _front_from_road(member, row, row.side)
+            sums = add_point(sums, 0.5 * (member.start + member.end), row.side * front)
     middles = about_mean(sums)
     if middles.xx <= UNEVEN_SIGMA * UNEVEN_SIGMA:
         return RowDirection(0.0, PI)

@@ -24,7 +24,7 @@ from controller_fmu.parking.measurement.predicted_range import (
 from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, in_field_of_view
 from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType, into_heading, row_point
 from controller_fmu.parking.slots.correction import correction_gate
-from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow, is_too_short_for_car
+from controller_fmu.parking.slots.row import ASKEW_VARIANCE, RowMember, SlotRow, is_too_short_for_car, road_heading
 from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -52,6 +52,9 @@ class SlotFilter(NamedTuple):
     into_x: float = 0.0
     into_y: float = 1.0
     is_begun: bool = False
+    road_behind: float = 0.0
+    """Heading of the road [rad] at the neighbour behind, and at the one ahead."""
+    road_ahead: float = 0.0
     absent: int = 0
     """Measurements through both neighbours in a row, where cars that stand across the road had to be."""
 
@@ -98,19 +101,30 @@ def begin_slot_filter(slot: SlotCandidate) -> SlotFilter:
         + (diagonal[number % STATE_COUNT] if number // STATE_COUNT == number % STATE_COUNT else 0.0)
         for number in range(STATE_COUNT * STATE_COUNT)
     )
-    return SlotFilter(state, covariance, into_x, into_y, True)
+    road_behind = _road_heading_at(slot.row, slot.behind, slot.behind.end_length)
+    road_ahead = _road_heading_at(slot.row, slot.ahead, slot.ahead.start_length)
+    return SlotFilter(state, covariance, into_x, into_y, True, road_behind, road_ahead)
 
 
 def _front_heading(row: SlotRow, member: RowMember, side_length: float) -> float:
     """Return the heading [rad] of a member's front as it was passed; a pillar stands along the row.
 
-    A car stands nearly so: a short look at its front shows less of its heading than that.
+    A car stands nearly along the road: a short look at its front shows less of its heading than that.
     """
+    road = _road_heading_at(row, member, side_length)
     if is_too_short_for_car(side_length):
-        return row.frame.heading
+        return road
     length = max(member.end - member.start, FRONT_SIGMA)
     share = _heading_variance(member, side_length) / _front_variance(member, side_length)
-    return row.frame.heading + share * row.side * math.atan2(member.end_front - member.start_front, length)
+    turn = row.side * math.atan2(member.end_front - member.start_front, length)
+    return road + share * (row.frame.heading + turn - road)
+
+
+def _road_heading_at(row: SlotRow, member: RowMember, side_length: float) -> float:
+    """Return the heading [rad] of the road at a member, at a pillar that of the row."""
+    return (
+        row.frame.heading if is_too_short_for_car(side_length) else road_heading(row, 0.5 * (member.start + member.end))
+    )
 
 
 def _heading_variance(member: RowMember, side_length: float) -> float:
@@ -298,9 +312,10 @@ def slot_frame(slot: SlotCandidate, slot_filter: SlotFilter) -> Pose:
     """
     state = slot_filter.state
     heading = slot.row.frame.heading
-    neighbours = 0.5 * (wrap_angle(state[2] - heading) + wrap_angle(state[AHEAD_OFFSET + 2] - heading))
+    behind = wrap_angle(state[2] - slot_filter.road_behind)
+    ahead = wrap_angle(state[AHEAD_OFFSET + 2] - slot_filter.road_ahead)
     share = 0.5 if slot.type == SlotType.PARALLEL else 0.25
-    turn = state[TURN_INDEX] + share * (neighbours - state[TURN_INDEX])
+    turn = state[TURN_INDEX] + share * (0.5 * (behind + ahead) - state[TURN_INDEX])
     return Pose(0.5 * (state[0] + state[AHEAD_OFFSET]), 0.5 * (state[1] + state[AHEAD_OFFSET + 1]), heading + turn)
 
 

@@ -148,8 +148,7 @@ def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgr
     """
     slot = search.slot
     is_inferred = params.slot.wanted == SlotKind.NONE and not slot.is_external and slot.row.slope == 0.0
-    least_length = car_length(params.car) + params.slot.room_along
-    is_wide = slot.ahead.start - slot.behind.end >= least_length
+    is_wide = slot.ahead.start - slot.behind.end >= car_length(params.car) + params.slot.room_along
     if not is_inferred or not is_wide or search.slot_filter.absent < ABSENT_ECHOES:
         return search
     return search._replace(slot=slot._replace(type=SlotType.PARALLEL, is_nose_in=False))
@@ -218,10 +217,8 @@ def _track(memory: ParkingMemory, number: int, inputs: ParkingSystemInput, param
     if found.status == ReadingStatus.BLIND_ZONE and before_track.confirmations > 0:
         measured = range_in_blind_zone(before_track, approach, reading)
     track = update_track(before_track, is_echo, measured, approach, found.variance, sensors.cycle)
-    static = static_approach(before, sensor)
-    stands = abs(inputs.measured_speed) <= params.threshold.standstill
-    if stands or before_track.unexplained > 0:
-        track = with_approach(before_track, track, static)
+    if abs(inputs.measured_speed) <= params.threshold.standstill or before_track.unexplained > 0:
+        track = with_approach(before_track, track, static_approach(before, sensor))
     if not is_echo or measured >= MAX_MONITORED_RANGE:
         return track._replace(unexplained=max(track.unexplained - 1, 0))
     planned = range_to_polygons(sensor, memory.plan.obstacles.vertices, sensors.max_range)
@@ -339,9 +336,8 @@ def _with_external(memory: ParkingMemory, inputs: ParkingSystemInput, params: Pa
     """Return the search with the external slot, once the side sensors have passed it, or why it is rejected."""
     search = memory.search
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
-    given = inputs.external_slot
     landmarks = memory.perception.local_map.landmarks
-    found = external_candidate(given, inputs.odometry, landmarks, outline, params.slot, params.mapping)
+    found = external_candidate(inputs.external_slot, inputs.odometry, landmarks, outline, params.slot, params.mapping)
     sensor_x = params.car.ultrasonic.mounts[FRONT_LEFT_SIDE].x
     if found.type != SlotType.NONE and not has_passed_external(found, sensor_x, inputs.odometry):
         return search

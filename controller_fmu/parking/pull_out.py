@@ -53,8 +53,7 @@ def free_box(readings: tuple[float, ...], car: Car) -> FreeBox:
     box = FreeBox(far, -far, far, -far)
     for number in range(MAX_SENSORS):
         mount = sensors.mounts[number]
-        status = reading_status(readings[number], sensors)
-        if status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
+        if reading_status(readings[number], sensors) in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE):
             x = mount.x + readings[number] * math.cos(mount.yaw)
             y = mount.y + readings[number] * math.sin(mount.yaw)
             if number in (FRONT_MIDDLE, FRONT_MIDDLE + 1):

@@ -292,6 +292,27 @@ def test_a_car_whose_front_a_hitch_hides_is_a_neighbour() -> None:
     assert (car.start + 8.0, car.end + 8.0, car.front) == pytest.approx((-1.9, -0.1, 1.5))
 
 
+@pytest.mark.parametrize("seen", ["first", "last", "slanted side"])
+def test_a_hitch_is_in_the_middle_of_a_car_of_which_one_corner_shows(seen: str) -> None:
+    """The echoes of the hitch at -1.0 and of the corner at -0.1, 0.45 m deeper, may also make one side."""
+    at = -1.9 if seen == "first" else -0.1
+    points = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in ((-1.0, -1.05), (at, -1.5))]
+    seen_of_it = [side(-0.55, -1.275, -26.6, 1.006)] if seen == "slanted side" else points
+    landmarks = (*seen_of_it, side(4.1, -1.5, 0.0, 1.8), *(Landmark(),) * (MAX_LANDMARKS - 1 - len(seen_of_it)))
+    row = find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, RoadBend(), MappingParams())
+    assert row.used == 2
+    car = row.members[1]
+    assert (car.start + 8.0, car.end + 8.0, car.front) == pytest.approx((-1.9, -0.1, 1.5), abs=0.01)
+    assert (car.start_known, car.end_known) == (seen == "first", seen != "first")
+
+
+def test_a_post_beside_a_corner_hides_no_car() -> None:
+    """A car that reaches as far to its other side would be narrower than any."""
+    points = [Landmark(LandmarkType.POINT, x, y, confirmations=20) for x, y in ((-1.0, -1.05), (-0.6, -1.5))]
+    landmarks = (*points, side(4.1, -1.5, 0.0, 1.8), *(Landmark(),) * (MAX_LANDMARKS - 3))
+    assert find_row(landmarks, Pose(8.0, 0.0, 0.0), -1.0, RoadBend(), MappingParams()).used == 1
+
+
 def test_of_the_parts_between_posts_the_one_passed_last_counts() -> None:
     """A hitch stands before a car that is not measured but for its nearer corner: the slot begins at the corner."""
     cars = [side(-3.7, -1.5, 0.0, 1.8), side(4.2, -1.5, 0.0, 1.8)]

@@ -150,8 +150,7 @@ def fit_chain(update: ChainUpdate, reading: Measurement, ends_at_edge: bool, par
     last = chain.used - 1
     begins = ChainEnd(chain.begins_at_edge, OPEN_INSET, chain.begins_at_edge)
     ends = ChainEnd(ends_at_edge, OPEN_INSET, ends_at_edge)
-    begin = first_of_body(chain, reading.variance)
-    whole = _fit_part(chain, begin, last, reading, begins, ends)
+    whole = _fit_part(chain, first_of_body(chain, reading.variance), last, reading, begins, ends)
     at = parting_echo(chain, whole.landmark)
     if at > 0:
         # half of the gap between both bodies, by the echo at its middle: range2 = distance2 + (gap / 2)2
@@ -230,8 +229,7 @@ def first_of_body(chain: EchoChain, variance: float) -> int:
             top = number
     rise = chain.echoes[top].range - chain.echoes[0].range
     falls = chain.echoes[top + 1].range < chain.echoes[top].range
-    is_of_other = not chain.begins_at_edge and falls and rise > ROBUST_SIGMA * math.sqrt(2.0 * variance)
-    return top if is_of_other else 0
+    return top if not chain.begins_at_edge and falls and rise > ROBUST_SIGMA * math.sqrt(2.0 * variance) else 0
 
 
 def is_explained(chain: EchoChain, segment: Landmark, sensor: SensorPose, variance: float) -> bool:
@@ -437,9 +435,8 @@ def same_side(landmarks: tuple[Landmark, ...], new: Landmark, index: int, params
             last = along_of(other, b.x, b.y)
             overlap = min(last, other.end) - max(first, other.start)
             shorter = min(length_of(new), length_of(other))
-            middle = 0.5 * (first + last)
             across = offset_of(other, 0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
-            variance = offset_variance(other, middle) + offset_variance(new, 0.5 * (new.start + new.end))
+            variance = offset_variance(other, 0.5 * (first + last)) + offset_variance(new, 0.5 * (new.start + new.end))
             turns = turn * turn < params.gate * (other.hh + new.hh)
             if turns and overlap > SAME_OVERLAP * shorter and across * across < params.gate * variance:
                 return number

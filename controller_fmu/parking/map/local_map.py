@@ -13,7 +13,7 @@ from controller_fmu.parking.map.chain_update import (
 )
 from controller_fmu.parking.map.echo_chain import EchoChain, Ending
 from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, replace_landmark
 from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundaries, index_of_side, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
@@ -117,8 +117,7 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
         if index >= 0:
             local_map = with_landmark(local_map, index, oblique.passed[boundary])
     ending = chain_ending(local_map.chains[at], measurement)
-    ends = not oblique.is_oblique and ending != Ending.CONTINUES
-    if ends and local_map.chains[at].used >= MIN_ECHOES:
+    if not oblique.is_oblique and ending != Ending.CONTINUES and local_map.chains[at].used >= MIN_ECHOES:
         ended = ChainUpdate(local_map.landmarks, local_map.chains[at])
         ended = fit_chain(ended, measurement, ending == Ending.EDGE, params)
         local_map = local_map._replace(landmarks=ended.landmarks)
@@ -134,8 +133,7 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
 
 def with_landmark(local_map: LandmarkMap, index: int, landmark: Landmark) -> LandmarkMap:
     """Return the map with the landmark at ``index`` replaced."""
-    at = min(max(index, 0), MAX_LANDMARKS - 1)
-    return local_map._replace(landmarks=local_map.landmarks[:at] + (landmark,) + local_map.landmarks[at + 1 :])
+    return local_map._replace(landmarks=replace_landmark(local_map.landmarks, index, landmark))
 
 
 def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:

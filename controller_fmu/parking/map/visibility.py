@@ -84,8 +84,7 @@ def is_contradicted(landmark: Landmark, measurement: Measurement) -> bool:
         a = start_point(landmark)
         b = end_point(landmark)
         is_all_in_view = in_field_of_view(sensor, a.x, a.y) and in_field_of_view(sensor, b.x, b.y)
-        is_short = length_of(landmark) < BODY_BETWEEN
-        if not (is_all_in_view if is_short else predicted.origin == EchoOrigin.INTERIOR):
+        if not (is_all_in_view if length_of(landmark) < BODY_BETWEEN else predicted.origin == EchoOrigin.INTERIOR):
             return False
     along = along_of(landmark, predicted.x, predicted.y)
     sigma = math.sqrt(offset_variance(landmark, along) + measurement.variance + SIDE_DEVIATION * SIDE_DEVIATION)

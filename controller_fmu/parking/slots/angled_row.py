@@ -110,8 +110,7 @@ def find_angled_row(
     corners = _corners(landmarks, vehicle, side, params)
     line = _line_of(corners, side)
     sides = _side_heading(corners, line)
-    road = side * math.atan(line.slope)
-    if abs(_square_angle(sides - road)) < MAX_TILT:
+    if abs(_square_angle(sides - side * math.atan(line.slope))) < MAX_TILT:
         return SlotRow(vehicle, side)
     into = sides - 0.5 * PI if side < 0.0 else sides
     forwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into, 1.0)
@@ -247,8 +246,7 @@ def _line_through(row: SlotRow, line: RoadLine, lean: float) -> RoadLine:
     corners = about_mean(sums)
     if corners.n == 0:
         return line
-    is_known = corners.xx > 0.5 * LINE_LENGTH * LINE_LENGTH
-    slope = corners.xy / corners.xx if is_known else line.slope
+    slope = corners.xy / corners.xx if corners.xx > 0.5 * LINE_LENGTH * LINE_LENGTH else line.slope
     return RoadLine(slope, corners.y - slope * corners.x)
 
 

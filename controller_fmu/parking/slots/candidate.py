@@ -116,14 +116,12 @@ def find_slot(
     found = SlotCandidate()
     if slot.open_ended and row.used > 0:
         beside = _judge(_gap(_with_end(row, outline, slot), 0, landmarks, outline, params), rays, outline, slot)
-        is_free_there = beside.type == SlotType.PERPENDICULAR and is_observed_free(beside, rays)
-        found = beside if is_free_there else found
+        found = beside if beside.type == SlotType.PERPENDICULAR and is_observed_free(beside, rays) else found
     for number in range(MAX_MEMBERS - 1):
         if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
             candidate = _judge(_gap(row, number, landmarks, outline, params), rays, outline, slot)
             if candidate.type != SlotType.NONE and is_observed_free(candidate, rays):
-                better = candidate.reason == Reason.NONE or found.type == SlotType.NONE
-                found = candidate if better else found
+                found = candidate if candidate.reason == Reason.NONE or found.type == SlotType.NONE else found
     return found
 
 

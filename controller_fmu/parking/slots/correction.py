@@ -36,9 +36,8 @@ def _with_edge(
     is_first = before == initial
     known = corrected.behind.end_sigma if is_behind else corrected.ahead.start_sigma
     known = correction_gate(known) / CORRECTION_GATE_SIGMA if is_first else known
-    gate = correction_gate(math.sqrt(known * known + sigma * sigma))
     inside = x - before if is_behind else before - x
-    if abs(inside) < gate:
+    if abs(inside) < correction_gate(math.sqrt(known * known + sigma * sigma)):
         x = before + known * known / (known * known + sigma * sigma) * (x - before)
         sigma = min(known, sigma)
     elif inside < 0.0 and not (is_first and is_of_car and inside > -0.5 * CAR_WIDTH):
@@ -81,8 +80,7 @@ def _beside_flank(
         is_post = correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
         sigma = math.sqrt(landmark.xx + landmark.yy)
         return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
-    side_length = candidate.behind.end_length if is_behind else candidate.ahead.start_length
-    is_of_car = not is_too_short_for_car(side_length)
+    is_of_car = not is_too_short_for_car(candidate.behind.end_length if is_behind else candidate.ahead.start_length)
     turn = landmark.heading - candidate.row.frame.heading
     if deep > 0.0 and abs(math.cos(turn)) < math.sin(MAX_ANGLE):
         further = candidate.row.side * (outline.half_length - deep) / math.sin(turn)

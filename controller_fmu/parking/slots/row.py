@@ -174,17 +174,44 @@ def corner_of(landmark: Landmark, is_start: bool, row: SlotRow, params: MappingP
     return Point(at.x, row.side * at.y)
 
 
-def _hidden_front(corners: tuple[Point, ...], hitch: Point) -> RowMember:
-    """Return the front behind a point that stands out of it and hides it, such as a hitch: between its corners."""
+def _hidden_front(corners: tuple[Point, ...], hitch: Point, side: float) -> RowMember:
+    """Return the front behind a point that stands out of it and hides it, such as a hitch: between its corners.
+
+    They are points, or ends of sides towards which the hitch does not lie. It is in the middle of its car: a corner
+    that is not known is as far from it as the other one.
+    """
     first = Point(-NO_MEMBER, 0.0)
     last = Point(NO_MEMBER, 0.0)
-    for corner in corners:
+    for number in range(2 * MAX_LANDMARKS):
+        corner = corners[number]
         if UNEVEN_SIGMA < corner.y - hitch.y < ROW_DEPTH:
-            first = corner if first.x < corner.x < hitch.x else first
-            last = corner if hitch.x < corner.x < last.x else last
-    if hitch.y < 0.0 or hitch.x - first.x > MAX_HIDDEN or last.x - hitch.x > MAX_HIDDEN:
+            is_first = (number % 2 == 0) == (side < 0.0)
+            first = corner if is_first and first.x < corner.x < hitch.x else first
+            last = corner if not is_first and hitch.x < corner.x < last.x else last
+    is_started = hitch.x - first.x < MAX_HIDDEN
+    is_ended = last.x - hitch.x < MAX_HIDDEN
+    first = first if is_started else Point(2.0 * hitch.x - last.x, last.y)
+    last = last if is_ended else Point(2.0 * hitch.x - first.x, first.y)
+    length = last.x - first.x
+    if hitch.y < 0.0 or length > 2.0 * MAX_HIDDEN or is_too_short_for_car(length):
         return RowMember()
-    return RowMember(first.x, last.x, 0.5 * (first.y + last.y), True, True, first.y, last.y)
+    member = RowMember(first.x, last.x, 0.5 * (first.y + last.y), is_started, is_ended, first.y, last.y)
+    return member._replace(
+        start_sigma=0.0 if is_started else CAR_WIDTH_SIGMA, end_sigma=0.0 if is_ended else CAR_WIDTH_SIGMA
+    )
+
+
+def _member_of(corners: tuple[Point, ...], landmark: Landmark, row: SlotRow, params: MappingParams) -> RowMember:
+    """Return a landmark as a member of a row: a side, else the front that its end at the road hides.
+
+    The echoes of a hitch and of a corner behind it may seem one side that is turned too far.
+    """
+    side = side_as_member(landmark, row, row.side, params)
+    whole = landmark._replace(start_known=True, end_known=True)
+    a = corner_of(whole, True, row, params)
+    b = corner_of(whole, False, row, params)
+    near = a if a.y < b.y else b
+    return side if side.end > side.start or near.x >= NO_MEMBER else _hidden_front(corners, near, row.side)
 
 
 def _members(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> SlotRow:
@@ -192,12 +219,7 @@ def _members(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParam
     corners: tuple[Point, ...] = tuple(
         corner_of(landmarks[number // 2], number % 2 == 0, row, params) for number in range(2 * MAX_LANDMARKS)
     )
-    sides: tuple[RowMember, ...] = tuple(
-        _hidden_front(corners, corners[2 * number])
-        if landmarks[number].type == LandmarkType.POINT
-        else side_as_member(landmarks[number], row, row.side, params)
-        for number in range(MAX_LANDMARKS)
-    )
+    sides: tuple[RowMember, ...] = tuple(_member_of(corners, item, row, params) for item in landmarks)
     fronts: tuple[float, ...] = tuple(
         _front_from_road(member, row, row.side) if member.end > member.start else NO_MEMBER for member in sides
     )
@@ -280,8 +302,7 @@ def _side_weight(landmarks: tuple[Landmark, ...], sides: tuple[RowMember, ...], 
         if other.end > other.start and overlaps and abs(other.front - side.front) < ROW_DEPTH:
             known += 1.0 / _heading_variance(landmarks[number], other)
     uneven = STAGGER_SIGMA / (side.end - side.start)
-    misaligned = min(ASKEW_VARIANCE, 2.0 * uneven * uneven)
-    return 1.0 / (_heading_variance(landmarks[at], side) * (1.0 + misaligned * known))
+    return 1.0 / (_heading_variance(landmarks[at], side) * (1.0 + min(ASKEW_VARIANCE, 2.0 * uneven * uneven) * known))
 
 
 def _heading_variance(landmark: Landmark, side: RowMember) -> float:

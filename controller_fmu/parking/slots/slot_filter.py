@@ -190,8 +190,7 @@ def update_slot(slot_filter: SlotFilter, slot: SlotCandidate, reading: Measureme
     prior = 0.0
     for number in range(STATE_COUNT):
         prior += h[number] * gains[number]
-    noise = CORRELATED_ECHOES * (reading.variance + FRONT_SIGMA * FRONT_SIGMA)
-    s = prior + noise
+    s = prior + CORRELATED_ECHOES * (reading.variance + FRONT_SIGMA * FRONT_SIGMA)
     innovation = reading.range - echo.predicted.distance
     if innovation * innovation > gate * (prior + reading.variance + FRONT_SIGMA * FRONT_SIGMA):
         return slot_filter
@@ -261,8 +260,7 @@ def predict_echo(slot_filter: SlotFilter, slot: SlotCandidate, sensor: SensorPos
     if slot.depth < UNKNOWN_DEPTH:
         best = _nearer(best, _range_to_end(slot_filter, wide), sensor, slot_filter, END_INDEX)
     narrow = sensor._replace(cone_sin=sensor.cone_sin / CONE_SPREAD)
-    is_in_view = in_field_of_view(narrow, best.predicted.x, best.predicted.y)
-    return best._replace(is_known=best.is_known and is_in_view)
+    return best._replace(is_known=best.is_known and in_field_of_view(narrow, best.predicted.x, best.predicted.y))
 
 
 def _range_to_end(slot_filter: SlotFilter, sensor: SensorPose) -> PredictedRange:
@@ -328,14 +326,12 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         return slot
     state = slot_filter.state
     middle = slot_frame(slot, slot_filter)
-    before = pose_to_frame(slot.row.frame, middle._replace(heading=slot.row.frame.heading))
-    frame = pose_from_frame(before, middle)
+    frame = pose_from_frame(pose_to_frame(slot.row.frame, middle._replace(heading=slot.row.frame.heading)), middle)
     a = point_to_frame(state[0], state[1], frame)
     b = point_to_frame(state[AHEAD_OFFSET], state[AHEAD_OFFSET + 1], frame)
     behind_front = slot.row.side * a.y
     ahead_front = slot.row.side * b.y
     moved = behind_front - slot.behind.end_front + ahead_front - slot.ahead.start_front
-    front = slot.front + 0.5 * moved
     depth = slot.depth
     if slot.depth < UNKNOWN_DEPTH:
         depth = state[END_INDEX] - (middle.x * slot_filter.into_x + middle.y * slot_filter.into_y)
@@ -347,7 +343,7 @@ def slot_of_filter(slot: SlotCandidate, slot_filter: SlotFilter, outline: Vehicl
         row=known.row._replace(frame=frame),
         behind=known.behind._replace(end=behind, end_front=behind_front),
         ahead=known.ahead._replace(start=ahead, start_front=ahead_front),
-        front=front,
+        front=slot.front + 0.5 * moved,
         depth=depth,
     )
 

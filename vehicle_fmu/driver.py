@@ -79,7 +79,7 @@ def switch_is_on(time_ns: int, params: DriverParams) -> bool:
 
 
 def follows_bend(state: DriverState, params: DriverParams) -> bool:
-    """Return whether the driver steers along a bend as long as the wheel is his."""
+    """Return whether the driver steers along a bend while nobody else has the wheel."""
     return params.road_curvature != 0.0 and state.direction > 0 and not state.takeover
 
 

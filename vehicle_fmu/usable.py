@@ -17,7 +17,7 @@ def is_usable(params: VehicleParams) -> bool:
     """Return False if an equation of the chosen body, the steering or a sensor would have no meaning."""
     start = params.start
     return (
-        is_finite(start.x + start.y + start.heading)
+        is_finite(start.x + start.y + start.heading + params.driver.road_curvature)
         and _sizes(params.car.wheelbase)
         and _sizes(params.car.steering.ratio)
         and _sizes(params.largest_step)

@@ -266,6 +266,9 @@ BAD = [
     ("car.ultrasonic.mounts[2].yaw", math.inf),
     ("body_step", 0.0),
     ("road.grade", math.nan),
+    ("road.ramp.grade", math.nan),
+    ("scene.boxes[2].height", math.nan),
+    ("driver.road_curvature", math.nan),
 ]
 
 

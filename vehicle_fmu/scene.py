@@ -101,17 +101,20 @@ def clearance(
     """
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     body = outline_box(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
-    between_tyres = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
     nearest = limit
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             box = obstacle_box(obstacle, time_ns)
-            part = between_tyres if obstacle.height < scene.ground_clearance else body
-            if nearest <= 0.0 or centre_gap(part, box) < nearest:
+            if nearest <= 0.0 or centre_gap(body, box) < nearest:
+                part = body
+                if obstacle.height < scene.ground_clearance:
+                    part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
                 nearest = nearest_of(nearest, part, orient(box), obstacle.height >= kerb_height)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
-            part = between_tyres if kerb.height < scene.ground_clearance else body
+            part = body
+            if kerb.height < scene.ground_clearance:
+                part = outline_box(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
             line = orient_line(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
             nearest = nearest_of(nearest, part, line, kerb.height >= kerb_height)
     return nearest

@@ -179,20 +179,25 @@ def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     for number in (0, FRONT_MIDDLE, 2, 4, REAR_MIDDLE, 6):
         a = memory.perception.tracks[number]
         b = memory.perception.tracks[number + 1]
-        first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
-        second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
-        at = point_between(first, a.range, second, b.range)
-        is_corner = memory.search.slot.type == SlotType.PERPENDICULAR and is_slot_corner(memory.search.slot_filter, at)
-        if a.missed == 0 and b.missed == 0 and max(a.range, b.range) < MAX_FACING_RANGE and not is_corner:
-            nearer = a.expected - a.range
-            nearer_b = b.expected - b.range
+        nearer = a.expected - a.range
+        nearer_b = b.expected - b.range
+        is_middle = number == FRONT_MIDDLE or number == REAR_MIDDLE
+        if is_middle:
+            counts = min(abs(nearer), abs(nearer_b)) > MAX_DISPLACEMENT and is_at_rest(a) and is_at_rest(b)
+        else:
+            counts = moves and max(nearer, nearer_b) > MAX_DISPLACEMENT and min(a.range, b.range) > 0.0
+        if counts and a.missed == 0 and b.missed == 0 and max(a.range, b.range) < MAX_FACING_RANGE:
+            first = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
+            second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
+            at = point_between(first, a.range, second, b.range)
+            is_across = memory.search.slot.type == SlotType.PERPENDICULAR
             landmarks = memory.perception.local_map.landmarks
-            if number == FRONT_MIDDLE or number == REAR_MIDDLE:
-                is_displaced = min(abs(nearer), abs(nearer_b)) > MAX_DISPLACEMENT
-                if is_displaced and is_at_rest(a) and is_at_rest(b):
-                    new = facing_segment(first, a.range, second, b.range, variance)
-                    memory = with_landmarks(memory, put_facing(landmarks, new, params.mapping))
-            elif moves and max(nearer, nearer_b) > MAX_DISPLACEMENT and min(a.range, b.range) > 0.0:
+            if is_across and is_slot_corner(memory.search.slot_filter, at):
+                continue
+            if is_middle:
+                new = facing_segment(first, a.range, second, b.range, variance)
+                memory = with_landmarks(memory, put_facing(landmarks, new, params.mapping))
+            else:
                 memory = with_landmarks(memory, put_post(landmarks, first, second, at, variance, params.mapping))
     return memory
 

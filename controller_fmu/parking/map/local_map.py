@@ -13,7 +13,7 @@ from controller_fmu.parking.map.chain_update import (
 )
 from controller_fmu.parking.map.echo_chain import EchoChain, Ending
 from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, replace_landmark
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundaries, index_of_side, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
@@ -132,8 +132,9 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
 
 
 def with_landmark(local_map: LandmarkMap, index: int, landmark: Landmark) -> LandmarkMap:
-    """Return the map with the landmark at ``index`` replaced."""
-    return local_map._replace(landmarks=replace_landmark(local_map.landmarks, index, landmark))
+    """Return the map with the landmark at ``index`` replaced: written so, the compiler copies no other one."""
+    at = min(max(index, 0), MAX_LANDMARKS - 1)
+    return local_map._replace(landmarks=local_map.landmarks[:at] + (landmark,) + local_map.landmarks[at + 1 :])
 
 
 def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:

@@ -193,7 +193,7 @@ def _hidden_front(corners: tuple[Point, ...], hitch: Point, side: float) -> RowM
     first = first if is_started else Point(2.0 * hitch.x - last.x, last.y)
     last = last if is_ended else Point(2.0 * hitch.x - first.x, first.y)
     length = last.x - first.x
-    if hitch.y < 0.0 or length > 2.0 * MAX_HIDDEN or is_too_short_for_car(length):
+    if length > 2.0 * MAX_HIDDEN or is_too_short_for_car(length):
         return RowMember()
     member = RowMember(first.x, last.x, 0.5 * (first.y + last.y), is_started, is_ended, first.y, last.y)
     return member._replace(
@@ -207,11 +207,13 @@ def _member_of(corners: tuple[Point, ...], landmark: Landmark, row: SlotRow, par
     The echoes of a hitch and of a corner behind it may seem one side that is turned too far.
     """
     side = side_as_member(landmark, row, row.side, params)
+    if side.end > side.start or landmark.type == LandmarkType.NONE or not is_confirmed(landmark, params):
+        return side
     whole = landmark._replace(start_known=True, end_known=True)
     a = corner_of(whole, True, row, params)
     b = corner_of(whole, False, row, params)
     near = a if a.y < b.y else b
-    return side if side.end > side.start or near.x >= NO_MEMBER else _hidden_front(corners, near, row.side)
+    return side if near.y < 0.0 else _hidden_front(corners, near, row.side)
 
 
 def _members(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> SlotRow:

@@ -1,11 +1,13 @@
 """The map: estimates with their covariance over simulated passes."""
 
 import math
+import re
 from typing import Any
 
 import numpy as np
 import pytest
 
+from controller_fmu import APA
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES
 from controller_fmu.parking.map.free_space import is_free
 from controller_fmu.parking.map.landmark import (
@@ -25,6 +27,7 @@ from controller_fmu.parking.map.visibility import contradict
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, PredictedRange
 from controller_fmu.parking.measurement.sensor import sensor_pose
 from controller_fmu.parking.measurement.silent_sensor import MISSED_ECHOES
+from fmus.native.sources import fmu_sources
 from modelkit.geometry import Box
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -226,3 +229,11 @@ def test_of_what_two_sensors_took_for_one_surface_nothing_is_left(confirmations:
         surface = contradict(surface, gone, PARAMS)
     assert (surface.type == LandmarkType.SEGMENT) == (left == 1)
     assert left == 0 or (surface.start > -0.2 and surface.end == 0.6), "a side that was passed is shortened"
+
+
+def test_the_c_code_writes_a_landmark_and_copies_no_other_one() -> None:
+    text = "".join(fmu_sources(APA, "{token}", 2).values())
+    (body,) = re.findall(r"^static [^;]* with_landmark\([^;]*?\)\n\{\n(.*?)^\}", text, re.MULTILINE | re.DOTALL)
+    assert "->landmarks[at] = *landmark;" in body
+    assert "for (" not in body
+    assert "replace_landmark" not in body

@@ -48,7 +48,7 @@ class Obstacle(NamedTuple):
     speed_y: Annotated[float, Signal("m/s", "speed along y while it moves", -50.0, 50.0)] = 0.0
     moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, NEVER_TIME)] = 0.0
     halts_at: Annotated[float, Signal("s", "stops at this time; 1e9: never", 0.0, NEVER_TIME)] = NEVER_TIME
-    height: Annotated[float, Signal("m", "height", 0.0, 100.0, HOUSE)] = 2.0
+    height: Annotated[float, Signal("m", "height above the ground", 0.0, 100.0, HOUSE)] = 2.0
 
 
 class Kerb(NamedTuple):

@@ -8,10 +8,10 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.frames import planar_distance, point_to_frame, pose_from_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.map.chain_update import put_facing, put_post
+from controller_fmu.parking.map.chain_update import put_facing
 from controller_fmu.parking.map.facing_surface import FACING_ECHOES, MAX_FACING_RANGE, facing_segment, point_between
 from controller_fmu.parking.map.free_space import path_curvature
-from controller_fmu.parking.map.local_map import range_by_map, update_map
+from controller_fmu.parking.map.local_map import range_by_map, update_map, with_post
 from controller_fmu.parking.measurement.cycle import next_cycle, seconds
 from controller_fmu.parking.measurement.predicted_range import (
     EchoOrigin,
@@ -70,6 +70,8 @@ MAX_DISPLACEMENT = 0.06
 centimetres."""
 HALF_SENSOR_SPACING = 0.25
 """Half of the distance [m] of the two middle sensors of a bumper, at y = +-0.25 m (``modelkit.car``)."""
+BUMPER_PAIRS = (0, FRONT_MIDDLE, 2, 4, REAR_MIDDLE, 6)
+"""The first of two sensors that sit beside each other in a bumper."""
 MAX_REST = 0.3
 """What moves more slowly [m/s] stands: people walk at 0.5 m/s and more."""
 ABSENT_ECHOES = 10
@@ -164,10 +166,10 @@ def _with_obstacles(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
             perception=memory.perception._replace(yields=math.floor(YIELD_TIME / params.car.ultrasonic.cycle))
         )
     memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
-    return _with_facing(memory, inputs, params)
+    return _with_bumper_pairs(memory, inputs, params)
 
 
-def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
+def _with_bumper_pairs(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with what two sensors of a bumper beside each other measure elsewhere than map and plan.
 
     Both in the middle measure a surface at rest. One of them and the outer one, which looks aside, measure a post: it
@@ -176,7 +178,7 @@ def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
     sensors = params.car.ultrasonic
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     moves = abs(inputs.measured_speed) > params.threshold.standstill
-    for number in (0, FRONT_MIDDLE, 2, 4, REAR_MIDDLE, 6):
+    for number in BUMPER_PAIRS:
         a = memory.perception.tracks[number]
         b = memory.perception.tracks[number + 1]
         nearer = a.expected - a.range
@@ -191,14 +193,17 @@ def _with_facing(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
             second = sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry)
             at = point_between(first, a.range, second, b.range)
             is_across = memory.search.slot.type == SlotType.PERPENDICULAR
-            landmarks = memory.perception.local_map.landmarks
-            if is_across and is_slot_corner(memory.search.slot_filter, at):
-                continue
-            if is_middle:
+            is_corner = is_across and is_slot_corner(memory.search.slot_filter, at)
+            if not is_corner and is_middle:
                 new = facing_segment(first, a.range, second, b.range, variance)
-                memory = with_landmarks(memory, put_facing(landmarks, new, params.mapping))
-            else:
-                memory = with_landmarks(memory, put_post(landmarks, first, second, at, variance, params.mapping))
+                landmarks = put_facing(memory.perception.local_map.landmarks, new, params.mapping)
+                memory = with_landmarks(memory, landmarks)
+            elif not is_corner:
+                memory = memory._replace(
+                    perception=memory.perception._replace(
+                        local_map=with_post(memory.perception.local_map, first, second, at, variance, params.mapping)
+                    )
+                )
     return memory
 
 

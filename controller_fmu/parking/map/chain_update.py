@@ -44,10 +44,8 @@ from controller_fmu.parking.map.segment_fit import (
     SegmentGuess,
     fit_segment,
 )
-from controller_fmu.parking.map.visibility import may_be_in_view
 from controller_fmu.parking.measurement.predicted_range import EchoOrigin, predict_range_to_segment
 from controller_fmu.parking.measurement.sensor import Measurement, ReadingStatus, SensorPose, boundary_point
-from modelkit.geometry import Point
 from modelkit.maths import wrap_angle
 
 MIN_ECHOES = 4
@@ -456,30 +454,6 @@ def put_facing(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingPa
     shift = offset_of(known, new.x, new.y)
     moved = known._replace(x=known.x - shift * math.sin(known.heading), y=known.y + shift * math.cos(known.heading))
     return replace_landmark(landmarks, index, moved)
-
-
-def put_post(
-    landmarks: tuple[Landmark, ...], a: SensorPose, b: SensorPose, at: Point, variance: float, params: MappingParams
-) -> tuple[Landmark, ...]:
-    """Return the landmarks with a post where two ranges of ``variance`` [m2] meet, if both sensors may see it.
-
-    While the vehicle moves the ranges of one body meet at one place, which confirms it, those of two bodies elsewhere.
-    """
-    if not may_be_in_view(a, at) or not may_be_in_view(b, at):
-        return landmarks
-    ranges = planar_distance(at.x, at.y, a.x, a.y) * planar_distance(at.x, at.y, b.x, b.y)
-    cross = (at.x - a.x) * (at.y - b.y) - (at.y - a.y) * (at.x - b.x)
-    spread = variance * ranges * ranges / max(cross * cross, variance * ranges * ranges)
-    for number in range(MAX_LANDMARKS):
-        known = landmarks[number]
-        dx = at.x - known.x
-        dy = at.y - known.y
-        if known.type == LandmarkType.POINT and dx * dx + dy * dy < params.gate * (known.xx + spread):
-            count = known.confirmations + 1
-            moved = known._replace(x=known.x + dx / count, y=known.y + dy / count, confirmations=count)
-            return replace_landmark(landmarks, number, moved)
-    post = Landmark(LandmarkType.POINT, at.x, at.y, xx=spread, yy=spread, confirmations=1)
-    return replace_landmark(landmarks, free_index(landmarks), post)
 
 
 def is_better(before: Landmark, new: Landmark) -> bool:

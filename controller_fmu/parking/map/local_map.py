@@ -13,7 +13,7 @@ from controller_fmu.parking.map.chain_update import (
 )
 from controller_fmu.parking.map.echo_chain import EchoChain, Ending
 from controller_fmu.parking.map.free_space import FreeSpace, Ray, is_next_ray
-from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.landmark import MAX_LANDMARKS, Landmark, LandmarkType, free_index
 from controller_fmu.parking.map.oblique_side import CONE_BOUNDARIES, ConeBoundaries, index_of_side, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.map.prediction import predict_landmark
@@ -23,6 +23,7 @@ from controller_fmu.parking.map.visibility import (
     is_contradicted,
     is_in_reach,
     is_permanent,
+    may_be_in_view,
     predict_range,
     with_open_ends_extended,
 )
@@ -39,6 +40,7 @@ from controller_fmu.parking.measurement.sensor import (
 )
 from controller_fmu.parking.measurement.silent_sensor import MissedEchoes, count_missed_echo, is_credible_miss
 from modelkit.car import CarUltrasonic
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 CONFIRMING_RANGE = 0.1
@@ -93,9 +95,13 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
 def _without_deleted(local_map: LandmarkMap) -> LandmarkMap:
     """Return the map whose chains refer to no deleted landmark: its place may be taken by another one."""
     for number in range(SIDE_SENSORS):
-        chain = local_map.chains[number]
-        if chain.landmark >= 0 and local_map.landmarks[max(chain.landmark, 0)].type == LandmarkType.NONE:
-            local_map = _with_chain(local_map, number, chain._replace(landmark=-1))
+        index = local_map.chains[number].landmark
+        if index >= 0 and local_map.landmarks[max(index, 0)].type == LandmarkType.NONE:
+            local_map = local_map._replace(
+                chains=local_map.chains[:number]
+                + (local_map.chains[number]._replace(landmark=-1),)
+                + local_map.chains[number + 1 :]
+            )
     return local_map
 
 
@@ -135,6 +141,30 @@ def with_landmark(local_map: LandmarkMap, index: int, landmark: Landmark) -> Lan
     """Return the map with the landmark at ``index`` replaced: written so, the compiler copies no other one."""
     at = min(max(index, 0), MAX_LANDMARKS - 1)
     return local_map._replace(landmarks=local_map.landmarks[:at] + (landmark,) + local_map.landmarks[at + 1 :])
+
+
+def with_post(
+    local_map: LandmarkMap, a: SensorPose, b: SensorPose, at: Point, variance: float, params: MappingParams
+) -> LandmarkMap:
+    """Return the map with a post where two ranges of ``variance`` [m2] meet, if both sensors may see it.
+
+    While the vehicle moves the ranges of one body meet at one place, which confirms it, those of two bodies elsewhere.
+    """
+    if not may_be_in_view(a, at) or not may_be_in_view(b, at):
+        return local_map
+    ranges = planar_distance(at.x, at.y, a.x, a.y) * planar_distance(at.x, at.y, b.x, b.y)
+    cross = (at.x - a.x) * (at.y - b.y) - (at.y - a.y) * (at.x - b.x)
+    spread = variance * ranges * ranges / max(cross * cross, variance * ranges * ranges)
+    for number in range(MAX_LANDMARKS):
+        known = local_map.landmarks[number]
+        dx = at.x - known.x
+        dy = at.y - known.y
+        if known.type == LandmarkType.POINT and dx * dx + dy * dy < params.gate * (known.xx + spread):
+            count = known.confirmations + 1
+            moved = known._replace(x=known.x + dx / count, y=known.y + dy / count, confirmations=count)
+            return with_landmark(local_map, number, moved)
+    post = Landmark(LandmarkType.POINT, at.x, at.y, xx=spread, yy=spread, confirmations=1)
+    return with_landmark(local_map, free_index(local_map.landmarks), post)
 
 
 def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:

@@ -124,6 +124,8 @@ def side_as_member(landmark: Landmark, row: SlotRow, side: float, params: Mappin
     b = end_point(landmark)
     p = point_to_frame(a.x, a.y, row.frame)
     q = point_to_frame(b.x, b.y, row.frame)
+    if abs(_turn_to_road(landmark.heading, row, side, 0.5 * (p.x + q.x))) > MAX_TILT:
+        return RowMember()
     first = p if p.x < q.x else q
     last = q if p.x < q.x else p
     forward = p.x < q.x
@@ -142,8 +144,7 @@ def side_as_member(landmark: Landmark, row: SlotRow, side: float, params: Mappin
         length,
         landmark.gap_evidence,
     )
-    turn = _turn_to_road(landmark.heading, row, side, 0.5 * (p.x + q.x))
-    return member if abs(turn) <= MAX_TILT and _front_from_road(member, row, side) >= 0.0 else RowMember()
+    return member if _front_from_road(member, row, side) >= 0.0 else RowMember()
 
 
 def road_heading(row: SlotRow, along: float) -> float:

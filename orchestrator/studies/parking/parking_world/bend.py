@@ -74,10 +74,12 @@ class _Bend(NamedTuple):
         return np.asarray(s * np.sin(angle) * np.sinc(angle / np.pi))
 
 
-def onto_bend(f: F, found: F, seeds: Seeds, moved: Moved) -> dict[str, Array]:
-    """Return the parameters on the bend: neighbours turned about their corners at the slot, boxes ``moved`` carried."""
+def onto_bend(f: F, straight: F, found: F, seeds: Seeds, moved: Moved) -> dict[str, Array]:
+    """Return the parameters on the bend: neighbours turned about their corners at the slot, boxes ``moved`` carried.
+
+    ``straight``: the scene of ``apa-world``; ``found``: with all that this study adds.
+    """
     curvature, parallel = bend_curvature(f), np.asarray(f["kind"]) == 0
-    straight = world.parameters(f, seeds)
     slot = np.where(parallel, straight["slot.length"], straight["slot.width"])
     turned, depth = dict(f), np.zeros_like(slot)
     for which, towards in (("a", -1.0), ("b", 1.0)):
@@ -95,9 +97,9 @@ def onto_bend(f: F, found: F, seeds: Seeds, moved: Moved) -> dict[str, Array]:
         result |= bend.pose(f"scene.boxes[{number}]", found, stretch)
     for number in moved.walkers:
         result |= bend.pose(f"scene.boxes[{number}]", found) | bend.velocity(f"scene.boxes[{number}]", found)
-    at = found["vehicle.start.y"]
     result |= bend.pose("vehicle.start", found)
-    return {**result, "vehicle.driver.road_curvature": bend.curvature / (1.0 - bend.curvature * at)}
+    to_centre = 1.0 - bend.curvature * found["vehicle.start.y"]
+    return {**result, "vehicle.driver.road_curvature": bend.curvature / to_centre}
 
 
 def _pose_with_car(box: str, car: str, before: F, after: F) -> dict[str, Array]:

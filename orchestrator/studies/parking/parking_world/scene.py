@@ -61,7 +61,8 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     """Return what differs from run to run, by the names of a study's fields."""
     f = limit_in_bends(with_bays(f))
     f = {**f, "depth": _depth(f)}
-    found = world.parameters(f, seeds)
+    straight = world.parameters(f, seeds)
+    found = dict(straight)
     parallel = f["kind"] == 0
     sign = 1.0 - 2.0 * f["side"]
     slot = np.where(parallel, found["slot.length"], found["slot.width"])
@@ -83,7 +84,7 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
         "vehicle.road.ramp.grade": np.where(parallel, 0.0, 0.01 * (f["ramp"] + sign * f["bank"])),
     }
     moved = Moved((*ROWS["a"], *ROWS["b"]), (FIRST_LEG, SECOND_LEG), OVERHANG)
-    return onto_bend(f, found | _silent(f, found), seeds, moved)
+    return onto_bend(f, straight, found | _silent(f, found), seeds, moved)
 
 
 def _depth(f: F) -> Array:

@@ -11,6 +11,8 @@ import pytest
 from orchestrator.presentation.report import page as replay
 from orchestrator.studies.live import page as live
 
+BIOME = str(Path(sys.prefix) / "bin" / "biome")
+"""The linter of the extra ``test``."""
 TSC = Path(sys.prefix) / "scripts" / "node_modules" / "typescript" / "lib" / "tsc.js"
 """Where `make test` puts the TypeScript compiler."""
 STRICT = ["--allowJs", "--checkJs", "--noEmit", "--skipLibCheck", "--strict", "--noImplicitAny", "false"]
@@ -21,19 +23,17 @@ SCRIPTS = {"replay": replay.scripts, "live": lambda: "\n".join(live.scripts())}
 
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_the_linter_finds_nothing(name: Any, tmp_path: Path) -> None:
-    biome = shutil.which("biome") or pytest.skip("no biome here")
     shutil.copy(Path(__file__).parent / "biome.json", tmp_path)
     (tmp_path / f"{name}.js").write_text(SCRIPTS[name](), encoding="utf-8")
-    command = [biome, "lint", f"--config-path={tmp_path}", f"{name}.js"]
+    command = [BIOME, "lint", f"--config-path={tmp_path}", f"{name}.js"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_the_linter_would_find_a_name_that_nobody_declared(tmp_path: Path) -> None:
-    biome = shutil.which("biome") or pytest.skip("no biome here")
     shutil.copy(Path(__file__).parent / "biome.json", tmp_path)
     (tmp_path / "wrong.js").write_text("window.one = nobody;\n", encoding="utf-8")
-    done = subprocess.run([biome, "lint", f"--config-path={tmp_path}", "wrong.js"], cwd=tmp_path, capture_output=True)
+    done = subprocess.run([BIOME, "lint", f"--config-path={tmp_path}", "wrong.js"], cwd=tmp_path, capture_output=True)
     assert done.returncode != 0
 
 

@@ -89,16 +89,16 @@ function pathOf(engine, at) {
     return found;
   };
   const arcs = rows("path.segments", ["length", "curvature"]);
-  if (arcs.some(([length]) => length > 0)) return driven(AXES.map((axis) => at(`path.start.${axis}`)), -1, arcs.map(([length, k]) => [length, -k, -k]));
+  if (arcs.some(([length]) => length > 0)) return pointsAlong(AXES.map((axis) => at(`path.start.${axis}`)), -1, arcs.map(([length, k]) => [length, -k, -k]));
   const direction = at("apa.move.direction");
   if (!(direction * direction > 0)) return [];
   const pieces = rows("apa.move.pieces", ["length", "start_curvature", "end_curvature"]).map(([length, a, b]) => [length, direction * a, direction * b]);
-  return driven(AXES.map((axis) => at(`apa.move.start.${axis}`)), direction, pieces);
+  return pointsAlong(AXES.map((axis) => at(`apa.move.start.${axis}`)), direction, pieces);
 }
 
 // Points along pieces (length, turning per metre at the start, at the end).
 /** @param {number[]} start @param {number} direction @param {any[]} pieces */
-function driven([x, y, heading], direction, pieces) {
+function pointsAlong([x, y, heading], direction, pieces) {
   const points = [[x, y]];
   for (const [length, k0, k1] of pieces) {
     const count = length > 0 && Number.isFinite(length) ? Math.min(2000, Math.ceil(length / 0.1)) : 0;

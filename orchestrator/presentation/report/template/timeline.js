@@ -30,7 +30,8 @@ class Timeline {
   }
 
   label(run, name) {
-    const short = name.split(".").pop().replaceAll("_", " ");
+    const parts = name.split("."), isUnique = this.page.ribbons.every((other) => other === name || other.split(".").pop() !== parts.at(-1));
+    const short = parts.slice(isUnique ? -1 : -2).join(" ").replaceAll("_", " ");
     return this.page.runs.length > 1 ? `${short} ${run.label}` : short;
   }
 

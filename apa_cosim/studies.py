@@ -43,8 +43,8 @@ class StudyTable:
         return np.asarray(self._table.column(name))
 
     def share(self, outcome: str = "parked") -> float:
-        """Return the share of the runs that came out so."""
-        return float(np.mean(self["outcome"] == outcome))
+        """Return the share of the runs that ended so, by the study's own judgement where it has one."""
+        return float(np.mean(self[self._table.ends] == outcome))
 
     def to_pandas(self) -> "pd.DataFrame":
         """Return the whole table. Needs pandas."""

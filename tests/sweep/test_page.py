@@ -1,7 +1,9 @@
 """What a study's page and its numbers say."""
 
 import json
+import math
 import re
+from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -193,6 +195,36 @@ def test_the_share_of_variance_is_the_analytic_one() -> None:
     assert abs(variance_share(values, b) - 0.1) < 0.01
     assert variance_share(rng.random(40_000), a) < 0.001
     assert variance_share(np.ones(10), np.zeros(10, dtype=np.intp)) == 0.0
+    assert math.isnan(variance_share(rng.random(10), np.arange(10)))
+
+
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The table of a study that judges its runs itself, of few runs in which most factors differ."""
+    path = tmp_path_factory.mktemp("judged")
+    main(["sweep", "parking-world", "--runs", "40", "--seed", "5", "--out", str(path), "--no-page", "-q"])
+    return Table(path / "parking-world.parquet")
+
+
+def test_a_study_that_judges_its_runs_is_shown_by_its_own_judgement(judged: Table) -> None:
+    ends, outcomes = (Counter(judged.column(name).tolist()) for name in ("end", "outcome"))
+    assert ends["parked"] > outcomes["parked"] > 0
+    counted: Counter[str] = Counter()
+    for item in outcome_counts(judged):
+        counted[item.outcome] += item.runs
+        assert item.outcome != "parked" or not item.reason
+    assert counted == ends
+    page = study_page(judged)
+    valid, parked = judged.column("valid") == 1.0, judged.column("end") == "parked"
+    assert f"<dt>parked of valid</dt><dd>{(valid & parked).sum()} of {valid.sum()}</dd>" in page
+    assert sum(int(item.done.sum()) for item in maps(judged)) == ends["parked"]
+    assert [item.title for item in maps(judged)] == ["parallel", "perpendicular"]
+
+
+def test_factors_drawn_from_a_range_explain_no_run_by_itself(judged: Table) -> None:
+    assert len(axis(judged, "heading").labels) < len(np.unique(judged.column("heading"))) == judged.count
+    assert judged.note("extra")[0] == "m"
+    assert all(item.share["parked"] < 0.99 for item in influences(judged))
 
 
 def test_a_histogram_holds_every_run(table: Any) -> None:

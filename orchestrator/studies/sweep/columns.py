@@ -1,6 +1,6 @@
 """The columns of a study's table: what each means, and what a chunk of runs puts into them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,13 +35,15 @@ class TableColumn(NamedTuple):
     kind: type
     """``float``, ``int``, ``bool`` or ``str``."""
     signal: Signal
+    choices: Sequence[str] = ()
+    """Names of the values 0, 1, 2 ..., if it has but these."""
 
 
 def columns_of(study: Study, job: Job) -> list[TableColumn]:
     """Return the columns of the table of a study, in order."""
     return [
         TableColumn("row", int, Signal("1", "number of the run, from 0")),
-        *(TableColumn(key, KINDS[words.dtype.kind], Signal("1", "")) for key, words in study.design.labels.items()),
+        *_labels(study),
         *(TableColumn(field.key, field.variable.kind, field.variable.signal) for field in study.design.fields),
         TableColumn("run_seed", int, Signal("1", "random seed of the run")),
         TableColumn("outcome", str, Signal("1", "as in summary.json")),
@@ -94,6 +96,17 @@ def _is_within(
         met = CONDITIONS[limit.condition].margin(values_in(limit, numbers, found), limit_value(limit)) >= 0.0
         good &= met if limit.where is None else met | ~has[limit.where]
     return good
+
+
+def _labels(study: Study) -> Iterator[TableColumn]:
+    factors = {factor.name: factor for factor in study.space.factors} if study.space is not None else {}
+    for key, words in study.design.labels.items():
+        kind, factor = KINDS[words.dtype.kind], factors.get(key)
+        yield (
+            TableColumn(key, kind, Signal("1", ""))
+            if factor is None
+            else TableColumn(key, kind, Signal(factor.unit, factor.text, factor.low, factor.high), factor.choices)
+        )
 
 
 def _number(name: str, item: Metric) -> TableColumn:

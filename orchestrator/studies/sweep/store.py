@@ -200,6 +200,7 @@ def forget_made_of(table: Path) -> None:
 
 def _field(column: TableColumn) -> Any:
     signal = column.signal
-    states = {} if signal.states is None else {str(int(state)): state.name for state in signal.states}
+    states = {str(int(state)): state.name for state in signal.states or ()}
+    states |= {str(value): name for value, name in enumerate(column.choices)}
     metadata = {"unit": signal.unit, "text": signal.text, **({"states": json.dumps(states)} if states else {})}
     return pa.field(column.name, TYPES[column.kind], metadata=metadata)

@@ -128,7 +128,7 @@ def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: St
                 continue
             columns = fill_columns(study, job, chunk, rows)
             store.write(chunk.number, columns)
-            swept.successes += int((columns["outcome"] == study.scenario.success).sum())
+            swept.successes += int((columns[study.ends] == study.scenario.success).sum())
             swept.aborted += int((columns["outcome"] == "aborted").sum())
             swept.done += len(rows)
             swept.made += len(rows)
@@ -140,7 +140,7 @@ def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: St
 def about(study: Study, job: Job) -> dict[str, Any]:
     """Return what a table says about itself: enough to go on with it and to run any row again."""
     return {
-        "study": {**study.content, "labels": [*study.design.labels]},
+        "study": {**study.content, "labels": [*study.design.labels], "ends": study.ends},
         "job": job._asdict(),
         "design": study.design.digest(),
         "sources": sources_hash(),

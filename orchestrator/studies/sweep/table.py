@@ -27,6 +27,7 @@ class StudyAbout(BaseModel):
     name: str
     title: str = ""
     labels: list[str]
+    ends: str
 
 
 class TableAbout(BaseModel):
@@ -67,6 +68,8 @@ class Table:
             self.job = job_from(self.about["job"])
             self.labels: list[str] = self.about["study"]["labels"]
             """Columns that say what a run is called, where the study has such."""
+            self.ends: str = self.about["study"]["ends"]
+            """The column that says how a run ended."""
         except UNREADABLE as error:
             text = f"does not say what its study is ({type(error).__name__}); it is damaged or of another version"
             raise BadInput(text, file=path) from error

@@ -62,7 +62,7 @@ def study(runs: int = 2000, seed: int = 1, mild: bool = False, **fixed: float) -
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
     within = {GBT[kind]: world.limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     design = Design(_fields(shared), space.values(shares, seeds), seeds, space.values_by_name(shares))
-    return Study(shared, design, content, seeded, MEASURES, within, FOUND, space)
+    return Study(shared, design, content, seeded, MEASURES, within, FOUND, space, ends="end")
 
 
 def scenario() -> Scenario:

@@ -65,7 +65,7 @@ def study(runs: int = 2000, seed: int = 1, mild: bool = False, row_cars: int = 0
     design = Design(fields(row_cars), world.values(shares, seeds), seeds, world.values_by_name(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
-    return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
+    return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS, "end")
 
 
 def scenario(system: int = APA_SYSTEM) -> Scenario:

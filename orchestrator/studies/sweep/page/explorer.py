@@ -14,6 +14,7 @@ from orchestrator.studies.sweep.page.statistics import (
     deciding_limit,
     default_axes,
     outcome_kind,
+    reasons,
     value_text,
     varying_columns,
 )
@@ -34,7 +35,8 @@ def explorer_data(table: Table, shown: list[Map], live: str) -> str:
     listed = [_rows_of(item, mask, most) for item, mask in zip(shown, chosen, strict=True)]
     rows = sorted({row for cell in listed for found in cell.values() for row in found})
     keys = varying_columns(table)[:MAX_KEYS]
-    columns = {name: table.column(name) for name in ("outcome", "reason", "duration", *keys)}
+    columns = {name: table.column(name) for name in (table.ends, "duration", *keys)}
+    columns["reason"] = reasons(table)
     data: dict[str, Any] = {
         "maps": [
             {
@@ -98,7 +100,7 @@ def _rows_of(item: Map, chosen: Any, most: int) -> dict[tuple[int, int], list[in
 
 def _run_texts(table: Table, columns: dict[str, Any], row: int, keys: list[str]) -> list[str]:
     """Return outcome, its kind, reason, time [s], and the values of a run for people."""
-    outcome = str(columns["outcome"][row])
+    outcome = str(columns[table.ends][row])
     return [
         outcome.replace("_", " "),
         outcome_kind(outcome),

@@ -30,7 +30,7 @@ from orchestrator.studies.sweep.page.statistics import (
     worst,
 )
 from orchestrator.studies.sweep.table import Table
-from orchestrator.studies.sweep.verdict import OUTCOMES, RESULTS
+from orchestrator.studies.sweep.verdict import RESULTS
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -102,16 +102,25 @@ def _groups(table: Table) -> list[str]:
 
 def _facts(table: Table, good: int) -> str:
     low, high = wilson(good, table.count)
-    outcomes, study = Counter(table.column("outcome").tolist()), table.about["study"]
+    ends, study = Counter(table.column(table.ends).tolist()), table.about["study"]
     facts = {
         "runs": f"{table.count:,}".replace(",", " "),
         word(table): f"{good:,}".replace(",", " "),
+        **_valid_fact(table),
         "95 % interval": f"{100 * low:.2f} to {100 * high:.2f} %",
-        **{name.replace("_", " "): f"{outcomes[name]}" for name in OUTCOMES if outcomes[name] and name not in DONE},
+        **{name.replace("_", " "): f"{count}" for name, count in ends.most_common() if name not in DONE},
         "median time": f"{float(np.median(table.column('duration'))):.1f} s",
         **{key: Path(str(study[key])).stem for key in ("scenario", "seed") if key in study},
     }
     return "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in facts.items())
+
+
+def _valid_fact(table: Table) -> dict[str, str]:
+    """Return the success among the runs whose task the scene allows, where the study says which these are."""
+    if "valid" not in table.names():
+        return {}
+    valid = table.column("valid") == 1.0
+    return {f"{word(table)} of valid": f"{int(success_mask(table)[valid].sum())} of {int(valid.sum())}"}
 
 
 def card(title: str, text: str, body: str = "") -> str:
@@ -183,9 +192,9 @@ def _influences(table: Table) -> str:
     results = list(found[0].share)
     rows = []
     for item in found:
-        cells = [f"<code>{escape(item.name)}</code>", _meter(item.share[word(table)])]
+        cells = [f"<code>{escape(item.name)}</code>", _meter(np.nan_to_num(item.share[word(table)]))]
         for name in results:
-            cells.append(f"{100 * item.share[name]:.1f} %")
+            cells.append(_finite("{:.1f} %", 100 * item.share[name]) or "too few runs")
             cells.append(f"{item.rank[name]:+.2f}")
         rows.append(tuple(cells))
     heads = ["parameter", ""] + [text for name in results for text in (f"of {name}", "rank")]
@@ -207,7 +216,7 @@ def _worst(table: Table) -> str:
         rows.append(
             (
                 str(number),
-                f"{_pill(row['outcome'])} {escape(row['reason'])}",
+                f"{_pill(row[table.ends])} {escape(row['reason'])}",
                 escape(deciding_limit(table, number)),
                 _finite("{:+.1f} cm", 100.0 * row["final.lateral_error"]),
                 _finite("{:+.2f} deg", row["final.heading_error"] / RAD_PER_DEGREE),

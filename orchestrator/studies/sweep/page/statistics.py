@@ -1,5 +1,6 @@
 """What a table says: success rates over two parameters, what the result depends on, which runs are worst."""
 
+import math
 from collections import Counter
 from typing import Any, NamedTuple
 
@@ -92,7 +93,7 @@ def varying_columns(table: Table) -> list[str]:
 
 def success_mask(table: Table) -> NDArray[np.bool_]:
     """Return which runs have done their task."""
-    found: NDArray[np.bool_] = np.isin(table.column("outcome").astype(str), list(DONE))
+    found: NDArray[np.bool_] = np.isin(table.column(table.ends).astype(str), list(DONE))
     return found
 
 
@@ -112,11 +113,20 @@ class OutcomeCount(NamedTuple):
 
 def outcome_counts(table: Table, most: int = 20) -> list[OutcomeCount]:
     """Return the ``most`` frequent outcomes with their reasons, most frequent first."""
-    pairs = zip(table.column("outcome").tolist(), table.column("reason").tolist(), strict=True)
+    pairs = zip(table.column(table.ends).tolist(), reasons(table), strict=True)
     return [
         OutcomeCount(outcome, reason, count, count / table.count, *wilson(count, table.count))
         for (outcome, reason), count in Counter(pairs).most_common(most)
     ]
+
+
+def reasons(table: Table) -> list[str]:
+    """Return the reason of each run; none where a study that judges itself, or the summary, finds its task done."""
+    given = table.column("reason").tolist()
+    if table.ends == "outcome":
+        return list(given)
+    done = success_mask(table) | np.isin(table.column("outcome").astype(str), list(DONE))
+    return ["" if is_done else reason for reason, is_done in zip(given, done.tolist(), strict=True)]
 
 
 def deciding_limit(table: Table, number: int) -> str:
@@ -144,7 +154,10 @@ def word(table: Table) -> str:
 
 
 def axis(table: Table, name: str) -> Axis:
-    """Return a parameter or label cut into its values, if they are few or words, or into equal bins."""
+    """Return a parameter or label cut into its values, if they are few or words, or into equal bins.
+
+    Values that hardly ever occur twice are drawn from a range, however few there are.
+    """
     unit, text, states = table.note(name)
     if table.column(name).dtype == object:
         words, cell = np.unique(table.column(name).astype(str), return_inverse=True)
@@ -152,7 +165,7 @@ def axis(table: Table, name: str) -> Axis:
     factor, unit = for_people(unit)
     values = np.asarray(table.column(name), dtype=np.float64) * factor
     different = np.unique(values)
-    if len(different) <= MOST_VALUES:
+    if len(different) <= min(MOST_VALUES, max(HISTOGRAM_BINS, len(values) // 2)):
         cell = np.searchsorted(different, values)
         labels = [states.get(f"{value:.0f}", "").lower() or f"{value:.4g}" for value in different.tolist()]
         middle = 0.5 * (different[1:] + different[:-1])
@@ -212,13 +225,14 @@ def influences(table: Table) -> list[Influence]:
         own = rankdata(cut.cell if table.column(key).dtype == object else table.column(key))
         shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
         found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
-    return sorted(found, key=lambda item: -item.share[word(table)])
+    return sorted(found, key=lambda item: -np.nan_to_num(item.share[word(table)]))
 
 
 def variance_share(values: Array, cell: NDArray[np.intp]) -> float:
     """Return the variance of the cell means over the variance of ``values``: the first-order sensitivity, 0 to 1.
 
-    Corrected for the variance that the means of so few runs have by chance; never below 0.
+    Corrected for the variance that the means of so few runs have by chance; never below 0. NaN where each run has a
+    cell of its own: there is nothing to tell a dependence from chance.
     """
     good = np.isfinite(values)
     values, cell = values[good], cell[good]
@@ -230,7 +244,9 @@ def variance_share(values: Array, cell: NDArray[np.intp]) -> float:
     means = np.bincount(cell, weights=values)[used] / counts[used]
     between = float(np.sum(counts[used] * (means - values.mean()) ** 2)) / len(values)
     degrees = len(values) - int(used.sum())
-    chance = (total - between) * (int(used.sum()) - 1) / degrees if degrees > 0 else 0.0
+    if degrees == 0:
+        return math.nan
+    chance = (total - between) * (int(used.sum()) - 1) / degrees
     return min(1.0, max(0.0, (between - chance) / total))
 
 

@@ -60,6 +60,8 @@ class Study(NamedTuple):
     """What its numbers are made of, where a search may choose others."""
     goals: Sequence[Objective] = ()
     """What a search tries to break if nothing else is said, the first one first."""
+    ends: str = "outcome"
+    """The column that says how a run ended: that of the summary, or one of ``derived`` where the study judges."""
 
     @property
     def name(self) -> str:

@@ -15,6 +15,8 @@ from orchestrator.cli import main as apa
 from tests.conftest import FLAGS, chromium
 
 IMAGES = Path(__file__).parent / "images"
+RESULTS_TOP = 195
+"""Where the results of `apa test` begin on their page; what stands above names folders of this machine."""
 GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.complies_with_slow_down=true"]
 
 
@@ -30,7 +32,7 @@ def main() -> None:
         photograph(browser, runs["report"], "report-dark", "#t=14.5", {**wide, "color_scheme": "dark"})
         photograph(browser, runs["apa"], "report-apa", "#t=22", wide)
         photograph(browser, runs["compare"], "compare", "#t=9", wide)
-        photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}})
+        photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}}, top=RESULTS_TOP)
         live_pictures(browser, runs["live"], wide)
         browser.close()
 
@@ -79,8 +81,9 @@ def photograph(
     fragment: str,
     options: dict[str, Any],
     act: Callable[[Any], None] | None = None,
+    top: int = 0,
 ) -> None:
-    """Write docs/images/``name``.png of a page at a moment, or after ``act``."""
+    """Write docs/images/``name``.png of a page at a moment, or after ``act``; ``top``: pixels left out above."""
     context = browser.new_context(**options)
     page = context.new_page()
     page.goto(path.as_uri() + fragment)
@@ -89,7 +92,9 @@ def photograph(
         if act is not None:
             act(page)
         page.wait_for_timeout(300 if act is None else 1000)
-    page.screenshot(path=IMAGES / f"{name}.png")
+    size = options["viewport"]
+    part = {"x": 0, "y": top, "width": size["width"], "height": size["height"] - top}
+    page.screenshot(path=IMAGES / f"{name}.png", clip=part)
     context.close()
     print(f"docs/images/{name}.png")
 

@@ -8,7 +8,7 @@ const badge = (found) => element("span", { class: `pill ${OUTCOME_COLOR[found.ou
 
 function shortly(found) {
   const n = found.numbers, parts = [`${n.duration.toFixed(2)} s`];
-  if (Number.isFinite(n.manoeuvres)) parts.push(`${n.manoeuvres} shift${n.manoeuvres === 1 ? "" : "s"}`);
+  if (Number.isFinite(n.manoeuvres)) parts.push(`${n.manoeuvres} manoeuvre${n.manoeuvres === 1 ? "" : "s"}`);
   if (Number.isFinite(n["final.lateral_error"])) parts.push(`${(100 * n["final.lateral_error"]).toFixed(1)} cm lateral`, `${(n["final.heading_error"] * 180 / Math.PI).toFixed(2)}\u00b0`);
   return parts.join(" \u00b7 ");
 }

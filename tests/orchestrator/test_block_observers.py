@@ -1,5 +1,6 @@
 """What observers and endings make of many exchanges at once is what they make of one after the other."""
 
+import threading
 from collections import defaultdict
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from mcap.reader import make_reader
 from orchestrator.evaluation.verdict.geometry import CarOutline
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.presentation.drawing.scene import Frames, planar_pose, trail, trail_poses
+from orchestrator.presentation.log import mcap_log
 from orchestrator.session.session import Messages, make_instances, run_scenario
 from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.fmu_instance import all_values
@@ -36,6 +38,25 @@ def test_logs_of_both_masters_have_the_same_messages(tmp_path: Path, name: str) 
     assert {"/tf", "/trail", "/path", "/log"} <= logs["native"].keys()
     for topic, expected in logs["python"].items():
         assert logs["native"][topic] == expected, topic
+
+
+def test_the_thread_that_drives_draws_and_encodes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    threads: dict[str, set[int]] = defaultdict(set)
+
+    def note_threads(name: str) -> None:
+        call = getattr(mcap_log, name)
+
+        def noted(*arguments: object, **named: object) -> object:
+            threads[name].add(threading.get_ident())
+            return call(*arguments, **named)
+
+        monkeypatch.setattr(mcap_log, name, noted)
+
+    note_threads("RowChanges")
+    note_threads("sample_path")
+    run_scenario(load_scenario("guo2015-case4"), log=tmp_path / "log.mcap")
+    assert threads.keys() == {"RowChanges", "sample_path"}
+    assert threading.get_ident() not in set.union(*threads.values())
 
 
 def test_an_ending_finds_the_same_exchange_in_blocks() -> None:

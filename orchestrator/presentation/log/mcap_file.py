@@ -1,7 +1,7 @@
 """Writes an MCAP file whose rows of equal layout cost next to nothing, and that survives a kill.
 
 Chunks of at most a few MiB go to the operating system, into ``path``.part, which gets its name when complete.
-A thread makes the last messages of each chunk, compresses and writes it while the next one fills. A block of messages
+A thread makes the messages of each chunk's rows, compresses and writes it while the next one fills. A block of messages
 of one channel and of one size is one array, message headers included; what is written once goes through the records of
 the ``mcap`` package.
 Format: mcap.dev/spec.

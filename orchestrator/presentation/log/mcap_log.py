@@ -8,6 +8,7 @@ nothing in the file depends on real time, so the same run gives the same bytes.
 """
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +88,7 @@ class McapLog:
             if self._count == 0 and rest >= most:
                 end = begin + most
                 self._write_rows(t_ns[begin:end], rows[begin:end])
+                self._file.flush()
             else:
                 end = begin + min(rest, most - self._count)
                 filled = self._count + end - begin
@@ -94,6 +96,7 @@ class McapLog:
                 self._count = filled
                 if filled == most:
                     self._write_kept()
+                    self._file.flush()
             begin = end
 
     def say(self, t_ns: int, level: int, name: str, text: str) -> None:
@@ -113,7 +116,8 @@ class McapLog:
         """Write how the run ended and give the file its name."""
         self._write_kept()
         for pictures in self._pictures:
-            pictures.on_terminate(end.t_ns)
+            self._file.later(partial(pictures.on_terminate, t_ns=end.t_ns))
+        self._file.flush()
         self._file.metadata("end", with_checksum({"reason": end.reason, "t_ns": end.t_ns}))
         self._file.close()
 
@@ -122,15 +126,16 @@ class McapLog:
             self._write_rows(self._times[: self._count], self._rows[: self._count])
             self._count = 0
             self._rows, self._times = np.empty_like(self._rows), np.empty_like(self._times)
-        self._file.flush()
 
     def _write_rows(self, t_ns: Times, rows: Array) -> None:
+        self._file.later(lambda to: self._draw_and_encode(to, t_ns, rows))
+
+    def _draw_and_encode(self, to: MessageSink, t_ns: Times, rows: Array) -> None:
         changes = RowChanges(rows, self._latest)
         for pictures in self._pictures:
-            pictures.write(t_ns, rows, changes)
-        self._file.later(lambda to: self._signals.write(to, t_ns, rows, changes))
+            pictures.write(to, t_ns, rows, changes)
+        self._signals.write(to, t_ns, rows, changes)
         self._latest = rows[-1].copy()
-        self._file.flush()
 
     def _write_parameters(self, instance: FmuInstance) -> None:
         ports: Ports = instance.parameters
@@ -144,7 +149,6 @@ class _Pictures:
     """Frames and scene, as far as the instances have the signals for them."""
 
     def __init__(self, file: Sink, instances: Sequence[FmuInstance], scenario: Scenario) -> None:
-        self._file = file
         self._drawn = _frame_columns(instances)
         self._known = [place for place, column in enumerate(self._drawn) if column is not None]
         self._known_columns = [column for column in self._drawn if column is not None]
@@ -175,7 +179,7 @@ class _Pictures:
         self._stage = scene.Surroundings.of(scenario, around)
         self._changes = self._stage.changes_ns()
 
-    def write(self, t_ns: Times, rows: Array, changes: RowChanges) -> None:
+    def write(self, to: MessageSink, t_ns: Times, rows: Array, changes: RowChanges) -> None:
         """Draw what is due at these exchanges."""
         path_changes = changes.rows_of(self._path_and_road)
         self._path_is_drawn &= not len(path_changes)
@@ -186,22 +190,22 @@ class _Pictures:
             return
         times, drawn = t_ns[due], np.zeros((len(due), len(self._drawn)))
         drawn[:, self._known] = rows[due[:, None], self._known_columns]
-        self._file.later(lambda to: self._write_poses(to, times, drawn))
+        self._write_poses(to, times, drawn)
         while self._changes and times[-1] >= self._changes[0]:
-            self._draw_stage(int(times[np.searchsorted(times, self._changes[0])]))
+            self._draw_stage(to, int(times[np.searchsorted(times, self._changes[0])]))
         shown = due[times % PATH_PERIOD_NS < SCENE_PERIOD_NS]
         if not self._path_is_drawn and len(shown):
-            self._draw_paths(t_ns[shown], rows.take(shown, axis=0))
+            self._draw_paths(to, t_ns[shown], rows.take(shown, axis=0))
             self._path_is_drawn = not len(path_changes) or bool(path_changes[-1] <= shown[-1])
 
-    def _draw_stage(self, t_ns: int) -> None:
+    def _draw_stage(self, to: MessageSink, t_ns: int) -> None:
         self._changes = [change for change in self._changes if change > t_ns]
         still = scene.still_life(t_ns, self._car, self._stage)
-        self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
+        to.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
 
-    def on_terminate(self, t_ns: int) -> None:
+    def on_terminate(self, to: MessageSink, t_ns: int) -> None:
         if self._last_period >= 0:
-            self._file.later(lambda to: self._draw_trail(to, t_ns))
+            self._draw_trail(to, t_ns)
 
     def _write_poses(self, to: MessageSink, times: Times, drawn: Array) -> None:
         """Write the frames at ``times``, and the trail where it is due. ``drawn``: see ``scene.Frames.rows``."""
@@ -224,7 +228,7 @@ class _Pictures:
     def _draw_trail(self, to: MessageSink, t_ns: int) -> None:
         to.write(self._trail, t_ns, scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)]))
 
-    def _draw_paths(self, t_ns: Times, rows: Array) -> None:
+    def _draw_paths(self, to: MessageSink, t_ns: Times, rows: Array) -> None:
         """Draw the planned path wherever it changes."""
         if self._controller is None:
             return
@@ -237,7 +241,7 @@ class _Pictures:
             parameters = _values_by_name(self._controller.parameters) if on_road[row].any() else None
             points = sample_path(named, parameters=parameters)
             update = scene.path_update(int(t_ns[row]), points)
-            self._file.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
+            to.write(self._path, int(t_ns[row]), update.SerializeToString(deterministic=True))
 
 
 def _frame_columns(instances: Sequence[FmuInstance]) -> list[int | None]:

@@ -5,6 +5,11 @@ import pickle
 import sys
 
 gc.disable()  # it ends within a second
+from matplotlib.artist import ArtistInspector  # noqa: E402
+
+# matplotlib collects the properties of its classes for their documentation: a quarter of the time of its import.
+ArtistInspector.get_setters = lambda self: []  # type: ignore[method-assign]
+ArtistInspector.get_aliases = lambda self: {}  # type: ignore[method-assign]
 from orchestrator.presentation.drawing.figure import picture  # noqa: E402
 
 

@@ -72,6 +72,8 @@ def slot_in(found: Passed, wanted: int = SlotKind.NONE) -> SlotCandidate:
     ("degrees", "end", "side"),
     [
         (45, 8.9, 1.0),
+        (75, 8.9, 1.0),
+        (105, 8.9, 1.0),
         (120, 8.9, 1.0),
         *(
             pytest.param(*case, marks=pytest.mark.slow)

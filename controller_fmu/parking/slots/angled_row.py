@@ -32,6 +32,7 @@ from controller_fmu.parking.slots.row import (
     MEMBER_GAP,
     MIN_SIDE,
     NO_MEMBER,
+    STAGGER_SIGMA,
     RowMember,
     SlotRow,
     is_too_short_for_car,
@@ -40,6 +41,8 @@ from controller_fmu.parking.slots.row import (
 from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
+MAX_GATE = 1.0
+"""Of the direction of no side at all [rad2]: more than any angle modulo a right angle, squared."""
 MAX_CORNERS = 16
 """Corners at the road that are kept, the last ones passed."""
 LINE_DEPTH = 0.7
@@ -109,10 +112,11 @@ def find_angled_row(
     """Return the angled row on one side (1 left, -1 right) of a vehicle that drives along it; empty: there is none."""
     corners = _corners(landmarks, vehicle, side, params)
     line = _line_of(corners, side)
-    sides = _side_heading(corners, line)
-    if abs(_square_angle(sides - side * math.atan(line.slope))) < MAX_TILT:
+    sides = _side_direction(corners, line)
+    tilt = _square_angle(sides.heading - side * math.atan(line.slope))
+    if tilt * tilt < sides.gate + params.gate * _line_variance(corners, line):
         return SlotRow(vehicle, side)
-    into = sides - 0.5 * PI if side < 0.0 else sides
+    into = sides.heading - 0.5 * PI if side < 0.0 else sides.heading
     forwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into, 1.0)
     backwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into + side * 0.5 * PI, -1.0)
     ratio = forwards.log_likelihood - backwards.log_likelihood
@@ -153,12 +157,30 @@ def _corners(
     return corners
 
 
-def _side_heading(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
-    """Return the direction [rad] against the path, modulo a right angle, that most sides on a line agree with."""
+def _line_variance(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
+    """Return the variance [rad2] of a line's direction: of corners as unevenly out as cars stand in a row."""
+    sums = PointSums()
+    for corner in corners:
+        if _is_on_line(corner, line):
+            sums = add_point(sums, corner.along, corner.deep)
+    return STAGGER_SIGMA * STAGGER_SIGMA / max(about_mean(sums).xx, 1.0e-9)
+
+
+class SideDirection(NamedTuple):
+    """The direction of a row's sides [rad] against the path, modulo a right angle."""
+
+    heading: float = 0.0
+    gate: float = MAX_GATE
+    """Of its square error [rad2], as that of a side."""
+
+
+def _side_direction(corners: tuple[RoadCorner, ...], line: RoadLine) -> SideDirection:
+    """Return the direction that most sides on a line agree with."""
     most = 0.0
-    heading = 0.0
+    found = SideDirection()
     for one in corners:
         total = 0.0
+        known = 0.0
         sine = 0.0
         cosine = 0.0
         for corner in corners:
@@ -166,12 +188,14 @@ def _side_heading(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
             agrees = off * off < corner.gate + one.gate
             if corner.length > 0.0 and _is_on_line(corner, line) and agrees:
                 total += corner.length
+                known += 1.0 / corner.gate
                 sine += math.sin(4.0 * corner.heading) / corner.gate
                 cosine += math.cos(4.0 * corner.heading) / corner.gate
         if one.length > 0.0 and total > most:
             most = total
             heading = 0.25 * math.atan2(sine, cosine)
-    return heading if heading >= 0.0 else heading + 0.5 * PI
+            found = SideDirection(heading if heading >= 0.0 else heading + 0.5 * PI, 1.0 / known)
+    return found
 
 
 def _row_into(

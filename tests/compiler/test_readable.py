@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from fmus.compiler import translate
+from fmus.compiler.target.layout import without_unused
 from fmus.native.sources import translate_model
 from orchestrator.inputs.scenario.models import MODELS
 from tests.compiler.c_model import COMPILER, ZIG, compiled
@@ -217,3 +218,9 @@ def test_the_example_of_the_documentation_is_true(tmp_path: Path) -> None:
     translation = translate(model_of(module))
     for part in blocks["c"].strip().split("\n\n"):
         assert part in translation.header + translation.source
+
+
+def test_a_variable_is_unread_although_a_member_has_its_name() -> None:
+    lines = ["const Plan *plan = &memory->plan;", "const Goal goal = plan_goal(memory);", "memory->plan.goal = goal;"]
+    assert without_unused(lines) == lines[1:]
+    assert without_unused([*lines, "return plan->goal.x > goal.x;"]) == [*lines, "return plan->goal.x > goal.x;"]

@@ -12,6 +12,8 @@ LINE_BREAKS = ((", ", 2, 0), (" && ", 1, 1), (" || ", 1, 1), (" ? ", 1, 1), (" :
 )
 """Where a line may be broken: at which text, how many characters of it stay before the break, and how ugly it is."""
 DECLARATION = re.compile(r"(?!return )(?:const )?\w+ (?:\*|\(\*)?(\w+)\)?(?:\[\d+\])*(?: = .*)?;")
+VARIABLE = re.compile(r"(?<![\w.])(?<!->)[A-Za-z_]\w*")
+"""A name that is no member of a struct."""
 EMPTY = (
     (re.compile(r"if \(.*\) \{"), re.compile(r"\}")),
     (re.compile(r"if \(.*\) \{"), re.compile(r"\} else \{"), re.compile(r"\}")),
@@ -108,7 +110,7 @@ def _without_unread(lines: list[str], kept_calls: Collection[str]) -> list[str]:
     mentions: dict[str, list[int]] = {}
     for place, line in enumerate(lines):
         if not line.startswith("/*"):
-            for word in re.findall(r"[A-Za-z_]\w*", line):
+            for word in VARIABLE.findall(line):
                 mentions.setdefault(word, []).append(place)
     dropped: set[int] = set()
     for place, line in enumerate(lines):

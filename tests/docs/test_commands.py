@@ -71,6 +71,7 @@ ENDS = {
     "apa run my-slot.yaml": None,
     "apa test": None,
     "apa replay": None,
+    "apa sweep parking-world": None,
 }
 """Exit code that is not 0; None: 0 or 1, for what is judged there is the reader's own."""
 PARKED = "- {id: parked, signal: controller.phase, equals: PARKED, window: {at: end}, source: REQ-1}"

@@ -138,5 +138,6 @@ def _run(scenario: Scenario, given: ImportedFmus) -> SceneOutcome:
 
 def _instance(name: str, scenario: Scenario, foreign: ImportedFmus, messages: Messages) -> FmuInstance:
     if name in foreign.files:
-        return foreign.make_instance(name, foreign.files[name], scenario.parameters_for(name), messages.from_fmu)
+        ours, parameters = scenario.models.get(name), scenario.parameters_for(name)
+        return foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu, ours)
     return CompiledInstance(name, scenario.models[name], scenario.parameters_for(name))

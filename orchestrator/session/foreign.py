@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from modelkit.model import Model
 from modelkit.variables import Variable
 from orchestrator.inputs.scenario.load_scenario import load_scenario, load_system, scenario_names
 from orchestrator.inputs.scenario.models import MODELS
@@ -45,9 +46,10 @@ class ImportedFmus(NamedTuple):
         of_system = {instance: fmu_of(file) for instance, file in named.items() if instance not in self.files}
         return self._replace(files={**of_system, **self.files}) if of_system else self
 
-    def make_instance(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "FmuInstance":
-        """Return the instance ``name`` that runs the FMU at ``path``."""
-        model = MODELS.get(name)
+    def make_instance(
+        self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback, model: Model | None
+    ) -> "FmuInstance":
+        """Return the instance ``name`` that runs the FMU at ``path``, in the place of ``model`` if there is one."""
         if self.is_in_process and not is_fmi3(path):
             from orchestrator.simulation.cosim.local_instance import LocalInstance
 

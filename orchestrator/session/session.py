@@ -87,7 +87,8 @@ def make_instances(
     for name in scenario.places:
         parameters = scenario.parameters_for(name)
         if name in foreign.files:
-            instances.append(foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu))
+            ours = scenario.models.get(name)
+            instances.append(foreign.make_instance(name, foreign.files[name], parameters, messages.from_fmu, ours))
             continue
         model = scenario.models[name]
         parameters = {key: value for key, value in parameters.items() if model.shows(key)}

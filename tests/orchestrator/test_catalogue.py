@@ -12,9 +12,10 @@ from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.load_scenario import load_scenario
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
-from orchestrator.session.foreign import ImportedFmus
+from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
+from orchestrator.session.session import Messages, make_instances
 from orchestrator.simulation.cosim.algorithm import Interrupt
-from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_beside, fmu_files
 from orchestrator.testing.catalogue.entries import (
     STEP_TESTS,
     Clause,
@@ -201,15 +202,33 @@ def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
         assert markdown(judge_standards([f"catalogue/{name}"], bench, tmp_path / name)) in page()
 
 
+@compiled
+def test_a_third_party_controller_shows_what_the_controller_of_the_scenario_shows() -> None:
+    """Its local variables too, which requirements name."""
+    parking = load_scenario("apa-parallel-tight").models["controller"]
+    own = fmu_beside(fmu_files("native", lambda text: None)["controller"], parking)
+    foreign = ImportedFmus({"controller": own}, is_in_process=True)
+    scenario = load_bound_scenario("apa-parallel-tight", [], foreign).scenario
+    instances = make_instances(scenario, None, Messages(), foreign)
+    try:
+        shown = next(item for item in instances if item.name == "controller").outputs.names
+        assert {"phase", "apa.parking_time", "apa.slot.type"} <= set(shown)
+    finally:
+        for instance in instances:
+            instance.close()
+
+
 @pytest.mark.release
 @compiled
 def test_a_third_party_controller_is_judged_by_what_it_puts_out(tmp_path: Path) -> None:
     """Our own as a foreign FMU meets what it meets otherwise; one that crashes misses what it is run for."""
     catalogue = Catalogue(["catalogue/iso16787"])
-    foreign = ImportedFmus({"controller": fmu_files("native", lambda text: None)["controller"]})
+    parking = load_scenario("apa-parallel-tight").models["controller"]
+    own = fmu_beside(fmu_files("native", lambda text: None)["controller"], parking)
+    foreign = ImportedFmus({"controller": own})
     bench = SuiteConfig(fmu_files("native", lambda text: None), "native", foreign, [], Interrupt())
     catalogue.run([], bench, tmp_path, 1, lambda code: None)
-    assert counts(catalogue.verdicts) == {"met": 5, "missed": 0, "not tested": 1}
+    assert counts(catalogue.verdicts) == {"met": 4, "missed": 0, "not tested": 2}  # a step test chooses the system
     assert catalogue.code() == 0
 
 

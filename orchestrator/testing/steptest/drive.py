@@ -155,7 +155,8 @@ def _instance(test: StepTest, model: str, kind: str, foreign: ImportedFmus) -> F
         path = foreign.files.get(model) or fmu_of(str(test.near(model)))
         name = model if model in MODELS else OTHER
         known = parameters_of(path, name)
-        return foreign.make_instance(name, path, _parameters(test, known, name), lambda *said: None)
+        ours = models_for(test.parameters).get(name)
+        return foreign.make_instance(name, path, _parameters(test, known, name), lambda *said: None, ours)
     if model in MODELS:
         ours = models_for(test.parameters)[model]
         parameters = _parameters(test, variables(ours.params), model)

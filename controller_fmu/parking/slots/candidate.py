@@ -162,21 +162,18 @@ def _judge(found: SlotCandidate, rays: tuple[Ray, ...], outline: VehicleOutline,
         found = found._replace(flank_ratio=behind_ratio + ahead_ratio)
     least_length = 2.0 * outline.half_length + slot.room_along
     least_width = 2.0 * outline.half_width + slot.room_across
-    fits_parallel = width >= least_length
-    fits_perpendicular = width >= least_width
-    parallel = log_likelihood_ratio(found) > (0.0 if fits_parallel else LOG_TEN) and found.row.slope == 0.0
+    parallel = log_likelihood_ratio(found) > (0.0 if width >= least_length else LOG_TEN) and found.row.slope == 0.0
     parallel = parallel if slot.wanted == SlotKind.NONE else slot.wanted == SlotKind.PARALLEL
-    fits = fits_parallel if parallel else fits_perpendicular
+    missing = max((least_length if parallel else least_width) - width, 0.0)
     needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
     reason = Reason.NONE
-    if not fits:
+    if missing > 0.0:
         reason = Reason.SLOT_TOO_SHORT
     elif found.depth < needed:
         reason = Reason.SLOT_TOO_SHALLOW
     kind = SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR
     leads_on = found.row.slope * found.row.side > 0.0
     is_nose_in = slot.wanted == SlotKind.NOSE_IN or (slot.wanted != SlotKind.TAIL_IN and leads_on)
-    missing = max((least_length if parallel else least_width) - width, 0.0)
     return found._replace(type=kind, reason=reason, is_nose_in=is_nose_in, missing=missing)
 
 
@@ -336,8 +333,7 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
         for fraction in FREE_FRACTIONS:
             x = candidate.behind.end + fraction * (candidate.ahead.start - candidate.behind.end)
             point = row_point(candidate.row, x, candidate.front + min(deep, 0.5 * candidate.depth))
-            if is_free(rays, point.x, point.y):
-                count += 1
+            count += 1 if is_free(rays, point.x, point.y) else 0
     edges = (1 if candidate.behind.end_known else 0) + (1 if candidate.ahead.start_known else 0)
     return count >= MIN_FREE - edges or (edges == 2 and (count > 0 or candidate.front < NEAR_FRONT))
 

@@ -4,9 +4,10 @@ import math
 
 from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from controller_fmu.parking.map.params import BAY_WIDTH, CAR_WIDTH, CAR_WIDTH_SIGMA
+from controller_fmu.parking.map.params import BAY_SIGMA, BAY_WIDTH, CAR_WIDTH, CAR_WIDTH_SIGMA
 from controller_fmu.parking.slots.candidate import (
     LOG_TEN,
+    MAX_MERGED,
     SlotCandidate,
     SlotType,
     into_heading,
@@ -14,7 +15,7 @@ from controller_fmu.parking.slots.candidate import (
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import RowMember, SlotRow, is_too_short_for_car
+from controller_fmu.parking.slots.row import NO_MEMBER, RowMember, SlotRow, is_too_short_for_car
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -87,7 +88,7 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     are 2.3 to 2.9 m wide, so n follows from the width of usual bays and of this row's.
     """
     ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead)
-    distance = car_distance(candidate.behind, candidate.ahead)
+    distance = ahead - candidate.behind.end + 0.5 * _car_width(candidate.behind)
     bay = bay_width(candidate.row)
     if distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
@@ -96,41 +97,43 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     return ahead - distance * number / count
 
 
-def car_distance(behind: RowMember, ahead: RowMember) -> float:
-    """Return the distance [m] between the middles of the two cars beside a gap of a row."""
-    return ahead.start + 0.5 * _car_width(ahead) - behind.end + 0.5 * _car_width(behind)
-
-
 def _car_width(member: RowMember) -> float:
-    """Return the width [m] of the car beside a slot: as observed, if in full, else as usual.
+    """Return the width [m] of the car beside a slot: as usual, or if observed in full half way to that.
 
-    What hides both of its corners, such as a rack with bicycles, stands in its middle; a shorter side is a part of it.
+    An observed width errs as much as cars differ. What hides both corners of a car, such as a rack with bicycles,
+    stands in its middle.
     """
-    return member.end - member.start if _is_of_cars(member) and bays_within(member) == 0 else CAR_WIDTH
+    return 0.5 * (member.end - member.start + CAR_WIDTH) if _is_one_car(member) else CAR_WIDTH
 
 
-def _is_of_cars(member: RowMember) -> bool:
-    """Return whether a side is the front of a car, or of some, observed in full."""
-    return member.start_known and member.end_known and not is_too_short_for_car(member.end - member.start)
-
-
-def bays_within(member: RowMember) -> int:
-    """Return how many bays lie between the first and the last car across the road that make one side."""
-    return math.floor(max(member.end - member.start - CAR_WIDTH, 0.0) / BAY_WIDTH + 0.5)
+def _is_one_car(member: RowMember) -> bool:
+    """Return whether a side is the front of one car, observed in full; a shorter side is a part of one."""
+    width = member.end - member.start
+    is_one = not is_too_short_for_car(width) and width < CAR_WIDTH + 0.5 * BAY_WIDTH
+    return member.start_known and member.end_known and is_one
 
 
 def bay_width(row: SlotRow) -> float:
-    """Return the mean distance [m] from car to car where no place between two is empty; usual bays count as one."""
+    """Return the mean distance [m] from car to car where no place between two is empty; usual bays count as one.
+
+    A side is of one car or some: where it begins is the first one, where it ends the last one, as far as that is known.
+    """
     total = BAY_WIDTH
     count = 1
-    for number in range(row.used):
-        behind = row.members[number]
-        if _is_of_cars(behind):
-            total += behind.end - behind.start - _car_width(behind)
-            count += bays_within(behind)
-            ahead = row.members[max(number - 1, 0)]
-            distance = car_distance(behind, ahead)
-            if _is_of_cars(ahead) and CAR_WIDTH < distance < 2.0 * CAR_WIDTH:
-                total += distance
-                count += 1
+    last = NO_MEMBER
+    for number in range(2 * row.used):
+        member = row.members[number // 2]
+        is_end = number % 2 == 0
+        if is_end and row.members[max(number // 2 - 1, 0)].start - member.end > CAR_WIDTH:
+            last = NO_MEMBER
+        is_by_end = member.end_sigma < member.start_sigma if _is_one_car(member) else is_end
+        is_known = member.end_known if is_by_end else member.start_known
+        half = 0.5 * _car_width(member)
+        at = member.end - half if is_by_end else member.start + half
+        if is_known and not is_too_short_for_car(member.end_length if is_by_end else member.start_length):
+            bays = math.floor((last - at) / BAY_WIDTH + 0.5)
+            if bays <= MAX_MERGED and abs(last - at - bays * BAY_WIDTH) < 2.0 * BAY_SIGMA * bays:
+                total += last - at
+                count += bays
+            last = at
     return total / count

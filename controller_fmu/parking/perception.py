@@ -310,7 +310,8 @@ def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: Park
 def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, params: ParkingParams) -> SearchProgress:
     """Return the search with the slot on one side (1 left, -1 right) that the vehicle's front has passed, if any.
 
-    If it is rejected, a slot found before that overlaps it is none, either.
+    It has passed the car ahead only where that would come as near to the path as the one behind does: what is seen of
+    an oblique flank may end farther in. If the slot is rejected, a slot found before that overlaps it is none, either.
     """
     local_map = memory.perception.local_map
     rays = local_map.free_space.left if side > 0.0 else local_map.free_space.right
@@ -320,7 +321,9 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
         row = find_row(local_map.landmarks, local_map.pose, side, bend, params.mapping)
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     found = find_slot(row, local_map.landmarks, rays, outline, params.slot, params.mapping)
-    corner = row_point(found.row, found.ahead.start, found.ahead.start_front)
+    turn = found.row.frame.heading - local_map.pose.heading
+    beside = found.behind.end_front - side * math.tan(turn) * (found.ahead.start - found.behind.end)
+    corner = row_point(found.row, found.ahead.start, min(found.ahead.start_front, beside))
     ahead = point_to_frame(corner.x, corner.y, local_map.pose).x
     if found.type == SlotType.NONE or ahead >= params.car.wheelbase + params.car.front_overhang:
         return search

@@ -10,11 +10,13 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.costs import CostMeter, CostTable, cost_of_files, is_slow, read_costs
+from tests.costs import CostMeter, CostTable, cost_of_files, function_of, is_slow, read_costs
 
 settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("no clock")
 
+COST_IN_BROWSER = 1.0
+"""Of a test in a browser at least [s]."""
 FLAGS = [
     "--headless",
     "--no-sandbox",
@@ -85,15 +87,26 @@ def _share_rewriting(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the slow tests by their recorded cost, and run the files that cost most first, in the same order everywhere.
 
-    A browser takes time of processes that nobody waits for, so that no cost is recorded for it.
+    What only a release runs comes last. A browser takes time of processes that nobody waits for, so that no cost is
+    recorded for it.
     """
     costs = read_costs()
-    files = cost_of_files(costs)
+    run_costs: dict[str, float] = {}
     for item in items:
-        is_in_browser = "browser" in getattr(item, "fixturenames", ())
-        if item.get_closest_marker("release") or is_in_browser or is_slow(item.nodeid, costs):
+        name, is_in_browser = function_of(item.nodeid), "browser" in getattr(item, "fixturenames", ())
+        if item.get_closest_marker("release"):
             item.add_marker(pytest.mark.slow)
-    items.sort(key=lambda item: (-files.get(_file_of(item).removeprefix("tests/"), 0.0), _file_of(item)))
+            continue
+        if is_in_browser or is_slow(item.nodeid, costs):
+            item.add_marker(pytest.mark.slow)
+        run_costs[name] = max(run_costs.get(name, 0.0), costs.get(name, 0.0), COST_IN_BROWSER * is_in_browser)
+    files, with_release = cost_of_files(run_costs), cost_of_files(costs)
+
+    def order(item: pytest.Item) -> tuple[float, float, str]:
+        file = _file_of(item).removeprefix("tests/")
+        return -files.get(file, 0.0), -with_release.get(file, 0.0), file
+
+    items.sort(key=order)
 
 
 def _file_of(item: pytest.Item) -> str:

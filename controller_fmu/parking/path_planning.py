@@ -30,6 +30,7 @@ from controller_fmu.parking.obstacle_map import (
     with_echoes,
 )
 from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.perception import with_slot_type
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
     PlanningStatus,
@@ -42,7 +43,7 @@ from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.pull_out import free_box, pose_on_road, road_side, with_neighbours
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import UNKNOWN_DEPTH, SlotCandidate, SlotType
+from controller_fmu.parking.slots.candidate import LOG_TEN, UNKNOWN_DEPTH, SlotCandidate, SlotType, log_likelihood_ratio
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.external import external_pose
 from controller_fmu.parking.slots.goal import goal_pose, kerb_shift, least_depth, most_overhang, overhang_of
@@ -246,14 +247,16 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     if memory.strategy != Strategy.SLOT:
         return _with_pose_request(memory, inputs, params)
     slot = slot_in_map(memory, pose, params)
+    is_too_shallow = slot.depth < least_depth(slot, outline, params.slot) and log_likelihood_ratio(slot) > -LOG_TEN
+    memory = memory._replace(search=with_slot_type(memory.search, is_too_shallow, params))
+    slot = slot_in_map(memory, pose, params)
     beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
     mapped = obstacle_map(beside, slot, outline, pose, _free_road(memory, params), params.mapping)
     memory = _with_plan(memory, mapped, goal_pose(slot, outline, params.slot), inputs, params)
     least = least_depth(slot, outline, params.slot)
     if slot.depth < least:
         known = slot_of_filter(memory.search.slot, memory.search.slot_filter, outline).depth
-        stands_in_it = least <= known < UNKNOWN_DEPTH
-        reason = Reason.BLOCKED if stands_in_it else Reason.SLOT_TOO_SHALLOW
+        reason = Reason.SLOT_TOO_SHALLOW if known < least else Reason.BLOCKED
         memory = without_path(memory, reason, inputs, params)
     return memory
 

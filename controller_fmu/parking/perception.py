@@ -46,7 +46,7 @@ from controller_fmu.parking.objects.track import (
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.angled_row import find_angled_row
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, middle_of, row_point
 from controller_fmu.parking.slots.external import external_candidate, has_passed_external
 from controller_fmu.parking.slots.row import RoadBend, find_row
 from controller_fmu.parking.slots.slot_filter import (
@@ -93,7 +93,7 @@ def perceive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingP
         slot_filter = _update_slot_filter(memory, inputs, params)
         memory = _with_path_moved(memory, slot_filter)
         memory = memory._replace(search=memory.search._replace(slot_filter=slot_filter))
-        memory = memory._replace(search=with_slot_type(memory.search, params))
+        memory = memory._replace(search=with_slot_type(memory.search, False, params))
         memory = memory._replace(perception=memory.perception._replace(tracks=tracks))
     memory = memory._replace(perception=_with_measurements(memory.perception, inputs, params))
     return _with_obstacles(memory, inputs, params) if is_driving_state(memory.state) else memory
@@ -143,15 +143,16 @@ def _with_path_moved(memory: ParkingMemory, slot_filter: SlotFilter) -> ParkingM
     )
 
 
-def with_slot_type(search: SearchProgress, params: ParkingParams) -> SearchProgress:
-    """Return the search with a slot along the road that was taken for one across it, between cars not so deep.
+def with_slot_type(search: SearchProgress, is_too_shallow: bool, params: ParkingParams) -> SearchProgress:
+    """Return the search with a slot along the road that was taken for one across it.
 
-    In a gap too short for that the vehicle stands across the road whatever its neighbours are.
+    For that it is too shallow, or it lies between cars not so deep. In a gap too short to park along the vehicle stands
+    across the road whatever its neighbours are.
     """
     slot = search.slot
     is_inferred = params.slot.wanted == SlotKind.NONE and not slot.is_external and slot.row.slope == 0.0
     is_wide = slot.ahead.start - slot.behind.end >= car_length(params.car) + params.slot.room_along
-    if not is_inferred or not is_wide or search.slot_filter.absent < ABSENT_ECHOES:
+    if not is_inferred or not is_wide or not (is_too_shallow or search.slot_filter.absent >= ABSENT_ECHOES):
         return search
     return search._replace(slot=slot._replace(type=SlotType.PARALLEL, is_nose_in=False))
 
@@ -161,11 +162,9 @@ def _with_obstacles(memory: ParkingMemory, inputs: ParkingSystemInput, params: P
     echoes = tuple(
         echo_obstacle(memory.perception.tracks[number], number, inputs, params) for number in range(MAX_SENSORS)
     )
-    if any(is_yielded_to(track) for track in memory.perception.tracks):
-        memory = memory._replace(
-            perception=memory.perception._replace(yields=math.floor(YIELD_TIME / params.car.ultrasonic.cycle))
-        )
-    memory = memory._replace(perception=memory.perception._replace(echoes=echoes))
+    stands = any(is_yielded_to(track) for track in memory.perception.tracks)
+    yields = math.floor(YIELD_TIME / params.car.ultrasonic.cycle) if stands else memory.perception.yields
+    memory = memory._replace(perception=memory.perception._replace(echoes=echoes, yields=yields))
     return _with_bumper_pairs(memory, inputs, params)
 
 
@@ -339,7 +338,7 @@ def _bend(search: SearchProgress, curvature: float, vehicle: Pose, side: float) 
     """Return the bend of a row beside a path of ``curvature`` [1/m], at the slot found last on this side, if any."""
     for slot in search.offered:
         if slot.type != SlotType.NONE and slot.row.side == side:
-            middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
+            middle = row_point(slot.row, middle_of(slot), slot.front)
             at = point_to_frame(middle.x, middle.y, vehicle)
             return RoadBend(curvature / (1.0 - curvature * at.y), at.x)
     return RoadBend(curvature)
@@ -389,7 +388,7 @@ def is_overlapping(slot: SlotCandidate, found: SlotCandidate) -> bool:
     """Return whether the middle of a slot found before lies in a gap found now, on the same side of the road."""
     if slot.type == SlotType.NONE or slot.row.side != found.row.side:
         return False
-    middle = row_point(slot.row, 0.5 * (slot.behind.end + slot.ahead.start), slot.front)
+    middle = row_point(slot.row, middle_of(slot), slot.front)
     at = point_to_frame(middle.x, middle.y, found.row.frame)
     return found.behind.end < at.x < found.ahead.start
 

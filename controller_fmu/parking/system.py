@@ -176,8 +176,6 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     corner = row_point(search.slot.row, search.slot.behind.end, search.slot.front)
     is_near_slot = planar_distance(inputs.odometry.x, inputs.odometry.y, corner.x, corner.y) < MAX_RESUME_DISTANCE
     is_resumed = not wants_out and search.resumes and standing and inputs.apa_switch and is_near_slot
-    planned = memory.plan.is_found
-    has_readings = memory.perception.local_map.begun
     is_another = (
         not is_out
         and not search.slot.is_external
@@ -186,7 +184,7 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     return (
         bit(Condition.GOAL_KNOWN, not searches)
         | bit(Condition.RESUMED, is_resumed)
-        | bit(Condition.WANTS_OUT, wants_out and standing and inputs.apa_switch and has_readings)
+        | bit(Condition.WANTS_OUT, wants_out and standing and inputs.apa_switch and memory.perception.local_map.begun)
         | bit(Condition.SWITCHED_ON, inputs.apa_switch and searches and not is_resumed and not wants_out)
         | bit(Condition.SWITCHED_OFF, searches and not inputs.apa_switch)
         | bit(Condition.TAKEN_OVER, is_taken_over(memory.clocks, inputs, is_driver_driving(params)))
@@ -194,8 +192,8 @@ def _driver_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
         | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
         | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
         | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON or is_another)
-        | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and planned)
-        | bit(Condition.PLANNED, planned)
+        | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and memory.plan.is_found)
+        | bit(Condition.PLANNED, memory.plan.is_found)
         | bit(Condition.NO_NEARER, memory.plan.is_final)
     )
 
@@ -214,18 +212,16 @@ def _motion_conditions(memory: ParkingMemory, inputs: ParkingSystemInput, params
     blocked = memory.verdict.is_blocked
     is_forward = memory.strategy == Strategy.PULL_OUT and progress.direction > 0.0
     is_out = is_forward and is_clear_ahead(memory.perception.cycle.readings)
-    speeds = speed_tracking(memory, inputs, params)
     is_aside = abs(progress.lateral_error) > params.monitor.corridor
     lost = is_aside or abs(progress.heading_error) > params.monitor.corridor_heading
     patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
-    is_obstructed = memory.verdict.free_distance < NO_LIMIT
-    blocked_long = is_obstructed and seconds(memory.clocks.blocked) > patience
+    blocked_long = memory.verdict.free_distance < NO_LIMIT and seconds(memory.clocks.blocked) > patience
     halts = blocked or lost or is_out
     straightens = memory.state == ParkingState.STRAIGHTENING
     in_place = straightens and straight and standing and is_in_place(memory, inputs, params)
     return (
         bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
-        | bit(Condition.MUST_STOP, must_stop(progress, speeds, context) or halts)
+        | bit(Condition.MUST_STOP, must_stop(progress, speed_tracking(memory, inputs, params), context) or halts)
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
         | bit(Condition.AT_END, standing and (is_at_end(progress) or is_out))
         | bit(Condition.STANDING, standing and not blocked)

@@ -172,7 +172,18 @@ def test_cars_along_the_road_contradict_a_slot_across_it(depth: float, absent: i
         (wide, SlotType.PARALLEL if absent else SlotType.PERPENDICULAR),
     ):
         search = SearchProgress(slot=width, slot_filter=slot_filter)
-        assert with_slot_type(search, ParkingParams(car=CAR)).slot.type == kind
+        assert with_slot_type(search, False, ParkingParams(car=CAR)).slot.type == kind
+
+
+@pytest.mark.parametrize("is_too_shallow", [False, True])
+@pytest.mark.parametrize("ahead", [2.6, 6.5])
+def test_a_slot_too_shallow_to_stand_across_is_one_along_the_road_if_it_is_long_enough(
+    is_too_shallow: bool, ahead: float
+) -> None:
+    slot = slot_at()
+    search = SearchProgress(slot=slot._replace(ahead=slot.ahead._replace(start=ahead)))
+    kind = with_slot_type(search, is_too_shallow, ParkingParams(car=CAR)).slot.type
+    assert kind == (SlotType.PARALLEL if is_too_shallow and ahead > 6.0 else SlotType.PERPENDICULAR)
 
 
 def errors_after_drive(seed: int) -> tuple[float, float, float]:

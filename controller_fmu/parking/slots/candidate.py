@@ -1,8 +1,8 @@
 """A slot candidate: one gap between two members of a row, its likelier type, and why it is rejected if it is.
 
 Type hypotheses, compared by log-likelihood: cars that stand parallel show a side of about 4.4 m, cars that stand
-perpendicular a front of about 1.8 m; a side not seen in full says only how long it is at least. A kerb or wall at car
-width behind the row speaks for parallel; where nothing is, the flanks of both cars show how deep they are. Where the
+perpendicular a front of about 1.8 m; a side not seen in full says only how long it is at least. A kerb or wall nearer
+than a car is long speaks for parallel; where nothing is, the flanks of both cars show how deep they are. Where the
 vehicle fits both ways the likelier one counts; a gap too short to park along is one only if that is ten times likelier.
 """
 
@@ -52,8 +52,6 @@ MERGED_LENGTH = 1.0
 """So much [m] of a side that is still being passed may be the next car's: the gap shows when as much is seen of it."""
 MAX_CAR = 6.0
 """A longer side [m] is of several cars; one twice as long may be a wall, and shows nothing of how cars stand."""
-MAX_PARALLEL_DEPTH = 3.0
-"""A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 MAX_POST = 0.6
 """A shorter side [m] may be a pillar's."""
 MIN_INSET = 0.25
@@ -148,7 +146,7 @@ def _gap(
     if found.ahead.start - found.behind.end < 2.0 * outline.half_width:
         return SlotCandidate()
     found = found._replace(front=_front_of(found, number, outline.half_width))
-    return found._replace(depth=gap_depth(found, landmarks, outline, params))
+    return found._replace(depth=gap_depth(found, middle_of(found), outline.half_width, landmarks, params))
 
 
 def _judge(found: SlotCandidate, rays: tuple[Ray, ...], outline: VehicleOutline, slot: SlotParams) -> SlotCandidate:
@@ -182,7 +180,7 @@ def _front_of(found: SlotCandidate, number: int, half_width: float) -> float:
     row = found.row
     slope = row.side * row.slope
     if slope != 0.0:
-        corner = 0.5 * (found.behind.end + found.ahead.start) + (half_width if slope > 0.0 else -half_width)
+        corner = middle_of(found) + (half_width if slope > 0.0 else -half_width)
         return row.front_at + slope * corner
     ahead = row.members[number]
     if is_too_short_for_car(ahead.start_length) and number > 0:
@@ -243,8 +241,7 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
             if length < 2.0 * MAX_CAR:
                 ratio += side_log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA, 0.0)
                 ratio -= side_log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA, member.gap_evidence)
-    if candidate.depth < MAX_PARALLEL_DEPTH:
-        ratio += 2.0 * LOG_TEN
+    ratio -= length_log_likelihood(-candidate.depth, False, -CAR_LENGTH, CAR_LENGTH_SIGMA)
     return ratio + candidate.flank_ratio
 
 
@@ -300,15 +297,18 @@ def length_log_likelihood(length: float, is_complete: bool, mean: float, sigma: 
     return -min(0.5 * deviation * deviation, 2.0 * LOG_TEN)
 
 
+def middle_of(candidate: SlotCandidate) -> float:
+    """Return the middle [m] of a gap along its row."""
+    return 0.5 * (candidate.behind.end + candidate.ahead.start)
+
+
 def gap_depth(
-    candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
+    candidate: SlotCandidate, middle: float, half: float, landmarks: tuple[Landmark, ...], params: MappingParams
 ) -> float:
-    """Return how deep [m] behind the neighbours' fronts the first landmark lies where a vehicle would stand."""
+    """Return how deep [m] behind the fronts the first landmark lies, up to ``half`` [m] from the ``middle`` [m]."""
     row = candidate.row
-    room = 0.5 * (candidate.ahead.start - candidate.behind.end)
-    inset = max(MIN_INSET, room - (outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width))
-    low = candidate.behind.end + inset
-    high = candidate.ahead.start - inset
+    low = max(candidate.behind.end + MIN_INSET, middle - half)
+    high = min(candidate.ahead.start - MIN_INSET, middle + half)
     depth = UNKNOWN_DEPTH
     for number in range(MAX_LANDMARKS):
         landmark = landmarks[number]

@@ -7,7 +7,8 @@ from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, length_of, offset_variance, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import CAR_WIDTH, MappingParams
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth, middle_of
+from controller_fmu.parking.slots.goal import slot_middle
 from controller_fmu.parking.slots.row import is_too_short_for_car
 
 MIN_CORRECTION_GATE = 0.2
@@ -30,7 +31,7 @@ def _with_edge(
     it: the corner seen from the road may have been moving. The first flank of a car may be as far out as half of it,
     since the car may have moved away; any other one out there stands behind a pillar.
     """
-    is_behind = x < 0.5 * (candidate.behind.end + candidate.ahead.start)
+    is_behind = x < middle_of(candidate)
     initial = candidate.behind.end if is_behind else candidate.ahead.start
     before = corrected.behind.end if is_behind else corrected.ahead.start
     is_first = before == initial
@@ -60,7 +61,9 @@ def correct_slot(
     for landmark in landmarks:
         if candidate.type != SlotType.PARALLEL and is_confirmed(landmark, params):
             corrected = _beside_flank(corrected, candidate, landmark, outline)
-    return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))
+    half = outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width
+    depth = gap_depth(corrected, slot_middle(corrected), half, landmarks, params)
+    return corrected._replace(depth=min(candidate.depth, depth))
 
 
 def _beside_flank(
@@ -71,13 +74,13 @@ def _beside_flank(
     at = segment_point(landmark, along)
     middle = point_to_frame(at.x, at.y, candidate.row.frame)
     deep = candidate.row.side * middle.y - candidate.front
-    length = length_of(landmark)
-    is_behind = 2.0 * middle.x < candidate.behind.end + candidate.ahead.start
+    is_behind = middle.x < middle_of(candidate)
     inside = middle.x - candidate.behind.end if is_behind else candidate.ahead.start - middle.x
-    if landmark.type == LandmarkType.POINT or length <= MIN_FLANK:
+    if landmark.type == LandmarkType.POINT or length_of(landmark) <= MIN_FLANK:
         sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
         room = candidate.ahead.start - candidate.behind.end - 2.0 * outline.half_width
-        is_post = correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
+        is_whole = landmark.type == LandmarkType.POINT or (landmark.start_known and landmark.end_known)
+        is_post = is_whole and correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
         sigma = math.sqrt(landmark.xx + landmark.yy)
         return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
     is_of_car = not is_too_short_for_car(candidate.behind.end_length if is_behind else candidate.ahead.start_length)

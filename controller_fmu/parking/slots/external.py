@@ -16,7 +16,7 @@ from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import Landmark
 from controller_fmu.parking.map.params import CAR_LENGTH, CAR_WIDTH, MappingParams
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth, middle_of
 from controller_fmu.parking.slots.goal import least_depth
 from controller_fmu.parking.slots.params import SlotParams
 from controller_fmu.parking.slots.row import RowMember, SlotRow
@@ -40,9 +40,9 @@ def external_candidate(
         return SlotCandidate(reason=Reason.BAD_INPUT)
     candidate = _between_corners(given, vehicle)
     parallel = candidate.type == SlotType.PARALLEL
-    needed = 2.0 * (outline.half_length if parallel else outline.half_width)
-    needed = needed + (slot.room_along if parallel else slot.room_across)
-    seen = gap_depth(candidate, landmarks, outline, params)
+    half = outline.half_length if parallel else outline.half_width
+    needed = 2.0 * half + (slot.room_along if parallel else slot.room_across)
+    seen = gap_depth(candidate, middle_of(candidate), half, landmarks, params)
     least = least_depth(candidate, outline, slot)
     reason = Reason.NONE
     if candidate.ahead.start < needed:

@@ -12,6 +12,7 @@ from controller_fmu.parking.slots.candidate import (
     SlotType,
     into_heading,
     log_likelihood_ratio,
+    middle_of,
     row_point,
 )
 from controller_fmu.parking.slots.params import SlotParams
@@ -25,7 +26,6 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
 
     Across the road that is the neighbour that stands further in: the other one may carry a bicycle rack.
     """
-    middle = 0.5 * (candidate.behind.end + candidate.ahead.start)
     if candidate.type == SlotType.PARALLEL:
         deep = candidate.front + outline.half_width + kerb_shift(candidate, outline, params)
         heading = candidate.row.frame.heading
@@ -37,8 +37,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         uneven = abs(candidate.ahead.start_front - candidate.behind.end_front) if candidate.row.slope == 0.0 else 0.0
         deep = candidate.front + outline.half_length + min(0.5 * uneven, room)
         heading = into_heading(candidate) + (0.0 if candidate.is_nose_in else PI)
-        middle = _bay_middle(candidate)
-    centre = row_point(candidate.row, middle, deep)
+    centre = row_point(candidate.row, slot_middle(candidate), deep)
     ahead = outline.centre_ahead
     return Pose(centre.x - ahead * math.cos(heading), centre.y - ahead * math.sin(heading), heading)
 
@@ -78,8 +77,8 @@ def overhang_of(candidate: SlotCandidate, outline: VehicleOutline, pose: Pose) -
     return candidate.front + half - candidate.row.side * at.y
 
 
-def _bay_middle(candidate: SlotCandidate) -> float:
-    """Return the middle [m] along the row of the bay to park in, of several empty ones that in their middle.
+def slot_middle(candidate: SlotCandidate) -> float:
+    """Return where [m] along the row the vehicle is to stand: in the middle of the gap, or of one of several bays.
 
     There the errors of both neighbours and of the bays' width count least. Where it is not ten times likelier that the
     slot is across the road it is the bay passed last: beside a car its flank shows whether that stands across.
@@ -90,8 +89,8 @@ def _bay_middle(candidate: SlotCandidate) -> float:
     ahead = candidate.ahead.start + 0.5 * _car_width(candidate.ahead)
     distance = ahead - candidate.behind.end + 0.5 * _car_width(candidate.behind)
     bay = bay_width(candidate.row)
-    if distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
-        return 0.5 * (candidate.behind.end + candidate.ahead.start)
+    if candidate.type == SlotType.PARALLEL or distance < 3.0 * (bay - CAR_WIDTH_SIGMA):
+        return middle_of(candidate)
     count = max(math.floor(distance / bay + 0.5), 3)
     number = count // 2 if log_likelihood_ratio(candidate) < -LOG_TEN else 1
     return ahead - distance * number / count

@@ -27,7 +27,7 @@ from controller_fmu.parking.geometry.frames import planar_distance
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.measurement.cycle import seconds
 from controller_fmu.parking.measurement.sensor import MAX_SENSORS
-from controller_fmu.parking.measurement.silent_sensor import is_blind_towards
+from controller_fmu.parking.measurement.silent_sensor import has_blind_side
 from controller_fmu.parking.monitor.collision_monitor import (
     NO_LIMIT,
     EchoObstacle,
@@ -129,7 +129,7 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     if reason == Reason.NONE:
         manoeuvres = memory.progress.manoeuvres - spare
         reason = fault_reason(clocks, inputs, phase, manoeuvres, params.monitor.over_speed_time, params)
-    if reason == Reason.NONE and is_blind_towards(memory.perception.local_map.missed, direction):
+    if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
 

@@ -6,13 +6,10 @@ kind proves that the sensor works. With a dropout probability of 5 %, ``MISSED_E
 
 from typing import NamedTuple
 
-from controller_fmu.parking.measurement.sensor import MAX_SENSORS, ReadingStatus
+from controller_fmu.parking.measurement.sensor import FRONT_LEFT_SIDE, MAX_SENSORS, ReadingStatus
 
 MISSED_ECHOES = 6
 """In a row, by a working sensor once in 6e7 times (5 % dropouts)."""
-FRONT_RING = (8, 0, 1, 2, 3, 10)
-REAR_RING = (9, 4, 5, 6, 7, 11)
-"""Sensors of a bumper and the flanks beside it, from the left to the right."""
 
 
 class MissedEchoes(NamedTuple):
@@ -42,8 +39,11 @@ def is_silent(missed: MissedEchoes, sensor: int) -> bool:
     return missed.counts[min(max(sensor, 0), MAX_SENSORS - 1)] >= MISSED_ECHOES
 
 
-def is_blind_towards(missed: MissedEchoes, direction: int) -> bool:
-    """Return whether two sensors side by side, of those that look ahead (1) or back (-1), are silent; 0: at rest."""
-    ring = FRONT_RING if direction > 0 else REAR_RING
-    has_gap = any(is_silent(missed, ring[at]) and is_silent(missed, ring[at + 1]) for at in range(len(FRONT_RING) - 1))
-    return direction != 0 and has_gap
+def has_blind_side(missed: MissedEchoes) -> bool:
+    """Return whether two sensors in a row on a bumper (0 to 3, 4 to 7) or a flank (8, 9; 10, 11) are silent: a gap."""
+    return any(
+        (number % 4 < 3 if number < FRONT_LEFT_SIDE else number % 2 == 0)
+        and is_silent(missed, number)
+        and is_silent(missed, number + 1)
+        for number in range(MAX_SENSORS - 1)
+    )

@@ -106,8 +106,7 @@ def _view_at_rest(number: int, memory: ParkingMemory, inputs: ParkingSystemInput
     """Return what the newest reading of a sensor says of the middle of its cone."""
     sensors = params.car.ultrasonic
     reading = memory.perception.cycle.readings[number]
-    status = reading_status(reading, sensors)
-    is_known = status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO)
+    is_known = reading_status(reading, sensors) in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO)
     middle = sensor_pose(sensors.mounts[number], 0.5 * sensors.half_angle, inputs.odometry)
     return ViewAtRest(middle, reading - params.monitor.unexplained if is_known else -1.0)
 
@@ -199,7 +198,7 @@ def slot_in_map(memory: ParkingMemory, pose: Pose, params: ParkingParams) -> Slo
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
     landmarks = without_driven_over(memory.perception.local_map.landmarks, pose, outline)
     by_echoes = slot_of_filter(memory.search.slot, memory.search.slot_filter, outline)
-    return correct_slot(by_echoes, landmarks, outline, params.mapping)
+    return correct_slot(by_echoes, landmarks, outline, least_depth(by_echoes, outline, params.slot), params.mapping)
 
 
 def stands_in_slot(slot: SlotCandidate, pose: Pose, confidence: float, params: ParkingParams) -> bool:

@@ -41,6 +41,8 @@ from modelkit.vocabulary import Pose
 from tests.parking.simulated_pass import CAR, drive_past
 
 OUTLINE = vehicle_outline(CAR, 0.95)
+DEEP = 2.0 * OUTLINE.half_length
+"""A slot is needed so deep [m]."""
 COS, SIN = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
 
 
@@ -239,7 +241,7 @@ def test_a_flank_behind_a_pillar_does_not_widen_the_gap(beyond: float, edge: flo
     ahead = RowMember(3.0, 3.4, 1.0, True, True, 1.0, 1.0, 0.05, 0.05, 0.4, 0.4)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=ahead, front=1.0)
     flank = side(3.0 + beyond, -3.5, 90.0, 3.0 if beyond > 0.0 else 0.3)
-    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, DEEP, MappingParams())
     assert corrected.ahead.start == pytest.approx(edge, abs=0.005)
 
 
@@ -379,7 +381,7 @@ def test_a_flank_in_the_gap_bounds_it_wherever_its_corner_was_seen() -> None:
     row = SlotRow(Pose(), -1.0, members + (RowMember(),) * 6, 2)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=members[1], ahead=members[0], front=2.0)
     flank = side(2.6, -3.5, 90.0, 2.0)
-    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, DEEP, MappingParams())
     assert corrected.ahead.start == pytest.approx(2.6, abs=0.05)
     assert corrected.behind.end == 0.0
 
@@ -509,15 +511,25 @@ def test_a_pillar_bounds_the_gap_though_the_car_behind_it_is_mapped_too(order: i
     post = Landmark(LandmarkType.POINT, 2.7, -0.7, confirmations=20)
     for inner in (side(2.7, -0.8, 90.0, 0.4), post):
         landmarks = (inner, side(3.22, -2.5, 90.0, 2.0))[::order]
-        corrected = correct_slot(slot, landmarks + (Landmark(),) * (MAX_LANDMARKS - 2), OUTLINE, MappingParams())
+        corrected = correct_slot(slot, landmarks + (Landmark(),) * (MAX_LANDMARKS - 2), OUTLINE, DEEP, MappingParams())
         assert corrected.ahead.start == pytest.approx(2.7)
+
+
+@pytest.mark.parametrize(("deep", "edge"), [(DEEP - 0.2, 2.0), (DEEP - 0.05, 3.2)])
+def test_a_post_at_the_end_of_a_slot_no_deeper_than_the_vehicle_does_not_narrow_it(deep: float, edge: float) -> None:
+    """Two sensors of the bumper measure a wall as a post; 0.1 m before the wall the vehicle may stand."""
+    row = SlotRow(Pose(), -1.0, used=2)
+    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=RowMember(3.2, 5.0))
+    landmarks = (Landmark(LandmarkType.POINT, 2.0, -deep, confirmations=20),) + (Landmark(),) * (MAX_LANDMARKS - 1)
+    corrected = correct_slot(slot, landmarks, OUTLINE, DEEP - 0.1, MappingParams())
+    assert corrected.ahead.start == pytest.approx(edge)
 
 
 def test_a_car_that_has_moved_away_leaves_its_flank_to_bound_the_gap() -> None:
     row = SlotRow(Pose(), -1.0, used=2)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.3, 0.5), ahead=RowMember(3.5, 5.3))
     flank = side(0.0, -2.5, 90.0, 2.0)
-    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (flank,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, DEEP, MappingParams())
     assert corrected.behind.end == pytest.approx(0.0)
 
 
@@ -568,7 +580,7 @@ def test_a_turned_car_bounds_the_gap_where_the_vehicle_will_stand_however_much_o
     edges = []
     for deep in (0.6, 2.2, 3.6):
         flank = side(3.0 + deep * lean, -deep, -85.0, 1.0)
-        edges.append(correct_slot(slot, (flank,) * MAX_LANDMARKS, OUTLINE, MappingParams()).ahead.start)
+        edges.append(correct_slot(slot, (flank,) * MAX_LANDMARKS, OUTLINE, DEEP, MappingParams()).ahead.start)
     assert edges == pytest.approx([3.0 + OUTLINE.half_length * lean] * 3, abs=0.005)
 
 
@@ -579,7 +591,7 @@ def test_a_surface_before_the_bumper_ends_the_bay_that_the_vehicle_backs_into(x:
     behind, ahead = (RowMember(start, start + 1.8, 0.0, True, True) for start in (-1.8, 5.6))
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead)
     wall = side(x - 0.25, -3.0, 0.0, 0.5)._replace(start_known=False, end_known=False)
-    corrected = correct_slot(slot, (wall,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, MappingParams())
+    corrected = correct_slot(slot, (wall,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, DEEP, MappingParams())
     assert (corrected.behind.end, corrected.ahead.start) == (0.0, 5.6)
     assert corrected.depth == pytest.approx(3.0 if x > 2.8 else 50.0)
 
@@ -591,5 +603,5 @@ def test_a_short_piece_of_a_flank_does_not_narrow_the_gap_by_what_its_direction_
     sigma = math.radians(8.0)
     piece = side(3.03, -0.3, 261.0, 0.7)._replace(hh=sigma * sigma)
     landmarks = (side(3.0, -2.5, 90.0, 2.0), piece) + (Landmark(),) * (MAX_LANDMARKS - 2)
-    corrected = correct_slot(slot, landmarks, OUTLINE, MappingParams())
+    corrected = correct_slot(slot, landmarks, OUTLINE, DEEP, MappingParams())
     assert corrected.ahead.start == pytest.approx(3.0, abs=0.02)

@@ -54,20 +54,20 @@ def correction_gate(sigma: float) -> float:
 
 
 def correct_slot(
-    candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
+    slot: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, least: float, params: MappingParams
 ) -> SlotCandidate:
-    """Return the slot between the flanks and posts that have been measured across the road, as deep as is known now."""
-    corrected = candidate
+    """Return the slot between flanks and posts measured across the road, as deep as known; ``least`` [m] is needed."""
+    corrected = slot
     for landmark in landmarks:
-        if candidate.type != SlotType.PARALLEL and is_confirmed(landmark, params):
-            corrected = _beside_flank(corrected, candidate, landmark, outline)
-    half = outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width
+        if slot.type != SlotType.PARALLEL and is_confirmed(landmark, params):
+            corrected = _beside_flank(corrected, slot, landmark, outline, least)
+    half = outline.half_length if slot.type == SlotType.PARALLEL else outline.half_width
     depth = gap_depth(corrected, slot_middle(corrected), half, landmarks, params)
-    return corrected._replace(depth=min(candidate.depth, depth))
+    return corrected._replace(depth=min(slot.depth, depth))
 
 
 def _beside_flank(
-    corrected: SlotCandidate, candidate: SlotCandidate, landmark: Landmark, outline: VehicleOutline
+    corrected: SlotCandidate, candidate: SlotCandidate, landmark: Landmark, outline: VehicleOutline, least: float
 ) -> SlotCandidate:
     """Return a perpendicular slot beside a landmark, if that is a neighbour's flank, or a post or pillar in the gap."""
     along = 0.5 * (landmark.start + landmark.end)
@@ -80,7 +80,8 @@ def _beside_flank(
         sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
         room = candidate.ahead.start - candidate.behind.end - 2.0 * outline.half_width
         is_whole = landmark.type == LandmarkType.POINT or (landmark.start_known and landmark.end_known)
-        is_post = is_whole and correction_gate(sigma) < inside < room and 0.0 < deep < 2.0 * outline.half_length
+        # a vehicle may stand before a post that is as deep as a slot must be: it is of the slot's end
+        is_post = is_whole and correction_gate(sigma) < inside < room and 0.0 < deep < least
         sigma = math.sqrt(landmark.xx + landmark.yy)
         return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
     is_of_car = not is_too_short_for_car(candidate.behind.end_length if is_behind else candidate.ahead.start_length)

@@ -509,7 +509,8 @@ def test_a_pillar_bounds_the_gap_though_the_car_behind_it_is_mapped_too(order: i
     row = SlotRow(Pose(), -1.0, used=2)
     slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=RowMember(-1.8, 0.0), ahead=RowMember(3.2, 5.0))
     post = Landmark(LandmarkType.POINT, 2.7, -0.7, confirmations=20)
-    for inner in (side(2.7, -0.8, 90.0, 0.4), post):
+    face = side(2.7, -0.8, 90.0, 0.4)
+    for inner in (face, face._replace(start_known=False, end_known=False), post):
         landmarks = (inner, side(3.22, -2.5, 90.0, 2.0))[::order]
         corrected = correct_slot(slot, landmarks + (Landmark(),) * (MAX_LANDMARKS - 2), OUTLINE, DEEP, MappingParams())
         assert corrected.ahead.start == pytest.approx(2.7)
@@ -582,18 +583,6 @@ def test_a_turned_car_bounds_the_gap_where_the_vehicle_will_stand_however_much_o
         flank = side(3.0 + deep * lean, -deep, -85.0, 1.0)
         edges.append(correct_slot(slot, (flank,) * MAX_LANDMARKS, OUTLINE, DEEP, MappingParams()).ahead.start)
     assert edges == pytest.approx([3.0 + OUTLINE.half_length * lean] * 3, abs=0.005)
-
-
-@pytest.mark.parametrize("x", [1.4, 4.3])
-def test_a_surface_before_the_bumper_ends_the_bay_that_the_vehicle_backs_into(x: float) -> None:
-    """Two sensors measure 0.5 m of a wall across an empty bay, the one passed last of two: it is no post in the gap."""
-    row = SlotRow(Pose(), -1.0, used=2)
-    behind, ahead = (RowMember(start, start + 1.8, 0.0, True, True) for start in (-1.8, 5.6))
-    slot = SlotCandidate(SlotType.PERPENDICULAR, row=row, behind=behind, ahead=ahead)
-    wall = side(x - 0.25, -3.0, 0.0, 0.5)._replace(start_known=False, end_known=False)
-    corrected = correct_slot(slot, (wall,) + (Landmark(),) * (MAX_LANDMARKS - 1), OUTLINE, DEEP, MappingParams())
-    assert (corrected.behind.end, corrected.ahead.start) == (0.0, 5.6)
-    assert corrected.depth == pytest.approx(3.0 if x > 2.8 else 50.0)
 
 
 def test_a_short_piece_of_a_flank_does_not_narrow_the_gap_by_what_its_direction_errs() -> None:

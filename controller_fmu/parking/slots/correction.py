@@ -79,9 +79,8 @@ def _beside_flank(
     if landmark.type == LandmarkType.POINT or length_of(landmark) <= MIN_FLANK:
         sigma = candidate.behind.end_sigma if is_behind else candidate.ahead.start_sigma
         room = candidate.ahead.start - candidate.behind.end - 2.0 * outline.half_width
-        is_whole = landmark.type == LandmarkType.POINT or (landmark.start_known and landmark.end_known)
         # a vehicle may stand before a post that is as deep as a slot must be: it is of the slot's end
-        is_post = is_whole and correction_gate(sigma) < inside < room and 0.0 < deep < least
+        is_post = correction_gate(sigma) < inside < room and 0.0 < deep < least
         sigma = math.sqrt(landmark.xx + landmark.yy)
         return _with_edge(corrected, candidate, middle.x, sigma, False) if is_post else corrected
     is_of_car = not is_too_short_for_car(candidate.behind.end_length if is_behind else candidate.ahead.start_length)

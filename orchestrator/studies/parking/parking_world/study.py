@@ -102,9 +102,10 @@ def groups_of(table: Table) -> dict[str, NDArray[np.bool_]]:
 def shares_of(table: Table) -> list[str]:
     """Return lines of shares, each reduced denominator with the full figure beside it."""
     ends, valid, groups = table.column("end"), table.column("valid") == 1.0, groups_of(table)
+    unavoidable = table.column("unavoidable") == 1.0
     parked, full = ends == PARKED, int((ends == PARKED).sum())
     lines = []
-    for name, chosen in groups.items():
+    for name, chosen in {**groups, "without unavoidable contact": ~unavoidable}.items():
         of = valid & chosen
         count, total = int(parked[of].sum()), int(of.sum())
         interval = percent_interval(count, total) if total else "-"
@@ -114,7 +115,6 @@ def shares_of(table: Table) -> list[str]:
             f"of all runs {full} of {len(ends)}"
         )
     touched = {end: ends == end for end in (MOVING, STANDING, DRIVER)}
-    unavoidable = table.column("unavoidable") == 1.0
     counts = (f"{end} {int(rows.sum())} ({int((rows & unavoidable).sum())})" for end, rows in touched.items())
     lines.append(f"contacts of {len(ends)} runs (also if the car had stood for 1 s): " + ", ".join(counts))
     bays = in_bays({name: table.column(name) for name in ("kind", "bays")})

@@ -24,11 +24,12 @@ from orchestrator.studies.parking.parking_world.outcome import (
     is_valid,
 )
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
-from orchestrator.studies.parking.parking_world.scene import BIN, OVERHANG, ROWS, parameters
+from orchestrator.studies.parking.parking_world.scene import BIN, NEIGHBOUR, OVERHANG, ROWS, parameters
 from orchestrator.studies.sweep.study.space import Space
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
 SPACE = Space(FACTORS, lambda values, seeds: np.zeros((len(seeds), 1)))
+PLACED = ("x", "y", "heading", "length", "width")
 ROW = {"kind": 0, "outcome": "parked", "reason": "all checks passed", "steered": 1.0, "touched.speed": float("nan")}
 
 
@@ -37,7 +38,7 @@ def drawn(count: int = 200) -> dict[str, np.ndarray]:
 
 
 def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
-    f = drawn() | {"bend": np.zeros(200)}
+    f = drawn() | {"bend": np.zeros(200), "angled": np.zeros(200)}
     found = parameters(f, np.arange(1, 201))
     along = np.where(f["kind"] == 0, f["length_b"], f["width_b"])
     first, second = (found[f"scene.boxes[{number}].x"] for number in ROWS["b"][:2])
@@ -51,7 +52,7 @@ def test_cars_of_a_row_stand_apart_by_their_gap() -> None:
 
 
 def test_a_hitch_shortens_a_parallel_slot_and_a_bin_leaves_none() -> None:
-    f = drawn() | {"bend": np.zeros(200)}
+    f = drawn() | {"bend": np.zeros(200), "angled": np.zeros(200)}
     found = parameters(f, np.arange(1, 201))
     valid = is_valid(f | found)
     short = (f["kind"] == 0) & (f["overhang"] >= HITCH) & (f["overhang_length"] > f["extra"]) & (f["pillar"] != 2)
@@ -183,6 +184,36 @@ def test_cars_in_a_bend_stand_along_its_arc(bend: float) -> None:
             assert box.heading == pytest.approx(tangent, abs=0.02), (number, kind)
         driver = float(found["vehicle.driver.road_curvature"][0])
         assert 1.0 / driver == pytest.approx(sense * (radius + (2.0 if bend == 3.0 else -2.0)), abs=1.0)
+
+
+@pytest.mark.parametrize("angled", [4.0, 5.0])
+def test_cars_of_an_angled_row_leave_the_slot_its_width(angled: float) -> None:
+    """Between the neighbours' flanks, in the middle of which the vehicle stands, flush with the row."""
+    nominal = SPACE.values_by_name(SPACE.nominal()[None])
+    for side, lean, extra in itertools.product((0.0, 1.0), (10.0, 45.0), (0.0, 2.0)):
+        row = {"kind": 1.0, "angled": angled, "side": side, "lean": lean, "extra": extra, "cars_a": 3.0, "cars_b": 3.0}
+        f = nominal | {name: np.array([value]) for name, value in row.items()}
+        found = {name: float(np.broadcast_to(value, 1)[0]) for name, value in parameters(f, np.array([1])).items()}
+        straight = parameters(f | {"angled": np.zeros(1)}, np.array([1]))
+        into = 1.0 - 2.0 * side
+        for number in (1, 2, *ROWS["a"], *ROWS["b"]):
+            box = Obstacle(**{name: found.get(f"scene.boxes[{number}].{name}", 0.0) for name in PLACED})
+            assert into * box.heading == pytest.approx(math.radians(lean if angled == 4.0 else -lean))
+            assert _outermost(obstacle_box(box, 0), into) == pytest.approx(0.0)
+        assert found["slot.width"] == float(straight["slot.width"][0])
+        target = Pose(*(found[f"target.{axis}"] for axis in ("x", "y", "heading")))
+        assert _outermost(outline(target, *(found[key] for key in CAR_KEYS)), into) == pytest.approx(0.0)
+        assert (into * math.sin(target.heading) < 0.0) == (angled == 4.0)  # front first: away from the road
+        for which, number in NEIGHBOUR.items():
+            dx, dy = (found[f"scene.boxes[{number}].{axis}"] - found[f"target.{axis}"] for axis in "xy")
+            aside = abs(dx * math.sin(target.heading) - dy * math.cos(target.heading))
+            assert aside == pytest.approx(0.5 * (found["slot.width"] + f[f"width_{which}"][0]))
+
+
+def _outermost(box: Box, into: float) -> float:
+    """Return how far [m] a box stands out into the road; ``into``: 1 for a slot on the right, -1 on the left."""
+    reach = box.length * abs(math.sin(box.heading)) + box.width * abs(math.cos(box.heading))
+    return into * box.y + 0.5 * reach
 
 
 def test_one_bay_is_a_slot_and_two_together_are_none() -> None:

@@ -90,7 +90,7 @@ def onto_bend(f: F, straight: F, found: F, seeds: Seeds, moved: Moved) -> dict[s
     owners = ("scene.boxes[1]", "scene.boxes[2]", "target", "slot")
     shifted = [f"{owner}.{axis}" for owner in owners for axis in ("x", "y", "heading")]
     result = {**found, **{name: found[name] + bent[name] - straight[name] for name in shifted}}
-    result |= _pose_with_car(f"scene.boxes[{moved.overhang}]", "scene.boxes[1]", found, result)
+    result |= pose_with_car(f"scene.boxes[{moved.overhang}]", "scene.boxes[1]", found, result)
     bend = _Bend(curvature * (1.0 - 2.0 * f["side"]), 0.5 * slot)
     stretch = 1.0 / (1.0 - depth * np.maximum(-curvature, 0.0))
     for number in moved.row:
@@ -102,7 +102,7 @@ def onto_bend(f: F, straight: F, found: F, seeds: Seeds, moved: Moved) -> dict[s
     return {**result, "vehicle.driver.road_curvature": bend.curvature / to_centre}
 
 
-def _pose_with_car(box: str, car: str, before: F, after: F) -> dict[str, Array]:
+def pose_with_car(box: str, car: str, before: F, after: F) -> dict[str, Array]:
     """Return the pose of a ``box`` that moves with a ``car`` from where both are ``before``."""
     x, y = before[f"{box}.x"] - before[f"{car}.x"], before[f"{box}.y"] - before[f"{car}.y"]
     angle = after[f"{car}.heading"] - before[f"{car}.heading"]

@@ -7,6 +7,8 @@ NONE, HITCH, RACK = 0, 1, 2
 WALL, PARKED_CARS = 1, 2
 FIRST_BEND = 3
 """Choices of the factor ``bend`` from this one on: the road bends."""
+FIRST_ANGLED = 4
+"""Choices of the factor ``angled`` from this one on: the row stands at an angle."""
 NO_BAYS = 2
 """Choices of the factor ``bays`` up to this one: no bay lines; beyond it, the number of empty bays."""
 ROW = (
@@ -39,12 +41,16 @@ BEND = (
     Factor("bend", "1", 0, 0, 4, "the road bends, the slots are", ("none", "none", "none", "inside", "outside")),
     Factor("bend_radius", "m", 30.0, 100.0, 100.0, "of the row along the bend"),
 )
+ANGLED = (
+    Factor("angled", "1", 0, 0, 5, "angled row, which opens to who parks", (*("no",) * 4, "nose in", "tail in")),
+    Factor("lean", "deg", 10.0, 30.0, 45.0, "of the cars of an angled row, from perpendicular"),
+)
 WIDER = {
     **{"person_speed": (0.5, 2.5), "slope": (-12.0, 12.0), "bank": (-12.0, 12.0), "kerb_height": (0.03, 0.2)},
     **{"length_a": (3.6, 5.4), "length_b": (3.6, 5.4)},
 }
 """Ranges of factors of ``apa-world``, by name."""
-OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN, RAMP, *BEND)
+OWN = (*ROW, *SURROUNDINGS, *BAYS, *TURN, RAMP, *BEND, *ANGLED)
 
 
 def _widen(factor: Factor) -> Factor:

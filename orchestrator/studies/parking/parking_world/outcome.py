@@ -23,7 +23,9 @@ from orchestrator.evaluation.verdict.numbers import Metric
 from orchestrator.evaluation.verdict.outcome import BEYOND
 from orchestrator.evaluation.verdict.truth import CAR_KEYS
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.parking.parking_world.angled import is_angled
 from orchestrator.studies.parking.parking_world.bays import in_bays, stands_in_a_bay, with_bays
+from orchestrator.studies.parking.parking_world.factors import NONE
 from orchestrator.studies.parking.parking_world.pedestrian import FIRST_LEG, SECOND_LEG
 from orchestrator.studies.parking.parking_world.scene import NEIGHBOUR, OVERHANG, has_bin, overhang_of
 from orchestrator.studies.parking.parkings import GBT
@@ -86,11 +88,12 @@ def _outcome_columns(columns: Columns) -> Mapping[str, Array]:
 def is_valid(columns: Columns) -> NDArray[np.bool_]:
     """Return whether each slot is one for its car."""
     f = with_bays({name: np.asarray(columns[name]) for name in FACTORS_OF_VALID})
-    return np.asarray((f["extra"] >= overhang_of(f)) & ~has_bin(f)) & ends_beyond_tail(columns)
+    ended = {**columns, "behind": np.where(is_angled(f), NONE, columns["behind"])}
+    return np.asarray((f["extra"] >= overhang_of(f)) & ~has_bin(f)) & ends_beyond_tail(ended)
 
 
 FACTORS_OF_VALID = (
-    *("kind", "car", "extra", "overhang", "overhang_length", "pillar", "bin"),
+    *("kind", "car", "extra", "overhang", "overhang_length", "pillar", "bin", "bend", "angled"),
     *("bays", "bay", "gap_a", "gap_b", "width_a", "width_b", "length_a", "length_b", "turn_a", "turn_b"),
 )
 

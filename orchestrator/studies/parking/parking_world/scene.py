@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.studies.parking.parking_world.angled import Turned, limit_in_angled_rows, onto_angle
 from orchestrator.studies.parking.parking_world.bays import first_bay, with_bays
 from orchestrator.studies.parking.parking_world.bend import Moved, limit_in_bends, onto_bend
 from orchestrator.studies.parking.parking_world.driver_pass import (
@@ -59,7 +60,7 @@ MOVER_ROOM = 0.1
 
 def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     """Return what differs from run to run, by the names of a study's fields."""
-    f = limit_in_bends(with_bays(f))
+    f = limit_in_angled_rows(limit_in_bends(with_bays(f)))
     f = {**f, "depth": _depth(f)}
     straight = world.parameters(f, seeds)
     found = dict(straight)
@@ -84,7 +85,8 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
         "vehicle.road.ramp.grade": np.where(parallel, 0.0, 0.01 * (f["ramp"] + sign * f["bank"])),
     }
     moved = Moved((*ROWS["a"], *ROWS["b"]), (FIRST_LEG, SECOND_LEG), OVERHANG)
-    return onto_bend(f, straight, found | _silent(f, found), seeds, moved)
+    found = onto_bend(f, straight, found | _silent(f, found), seeds, moved)
+    return onto_angle(f, found, Turned((*NEIGHBOUR.values(), *ROWS["a"], *ROWS["b"]), OVERHANG, BIN))
 
 
 def _depth(f: F) -> Array:

@@ -195,7 +195,8 @@ def _with_bumper_pairs(memory: ParkingMemory, inputs: ParkingSystemInput, params
             is_corner = is_across and is_slot_corner(memory.search.slot_filter, at)
             if not is_corner and is_middle:
                 new = facing_segment(first, a.range, second, b.range, variance)
-                memory = with_landmarks(memory, put_facing(memory.perception.local_map.landmarks, new, params.mapping))
+                landmarks = put_facing(memory.perception.local_map.landmarks, new, params.mapping)
+                memory = with_landmarks(memory, landmarks)
             elif not is_corner:
                 memory = memory._replace(
                     perception=memory.perception._replace(

@@ -45,8 +45,6 @@ from modelkit.vocabulary import Pose
 
 CONFIRMING_RANGE = 0.1
 """An echo this near [m] to the predicted one confirms a landmark: the expected echoes that it missed were dropouts."""
-POST_ECHOES = 2
-"""Echoes of a post in each cycle, one of either sensor: what a flank measures is confirmed by its echoes, too."""
 SIDE_SENSORS = MAX_SENSORS - BUMPER_SENSORS
 
 
@@ -132,7 +130,8 @@ def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingP
     chain = EchoChain() if oblique.is_oblique else next_chain(local_map.chains[at], measurement, ending)
     local_map = _with_chain(local_map, at, chain)
     if measurement.status == ReadingStatus.ECHO and chain.used >= max(MIN_ECHOES, chain.fitted + REFIT_ECHOES):
-        update = fit_chain(ChainUpdate(local_map.landmarks, local_map.chains[at]), measurement, False, params)
+        update = ChainUpdate(local_map.landmarks, local_map.chains[at])
+        update = fit_chain(update, measurement, False, params)
         local_map = local_map._replace(landmarks=update.landmarks)
         local_map = _with_chain(local_map, at, update.chain)
     return local_map
@@ -161,11 +160,10 @@ def with_post(
         dx = at.x - known.x
         dy = at.y - known.y
         if known.type == LandmarkType.POINT and dx * dx + dy * dy < params.gate * (known.xx + spread):
-            count = known.confirmations + POST_ECHOES
-            share = POST_ECHOES / count
-            moved = known._replace(x=known.x + share * dx, y=known.y + share * dy, confirmations=count)
+            count = known.confirmations + 1
+            moved = known._replace(x=known.x + dx / count, y=known.y + dy / count, confirmations=count)
             return with_landmark(local_map, number, moved)
-    post = Landmark(LandmarkType.POINT, at.x, at.y, xx=spread, yy=spread, confirmations=POST_ECHOES)
+    post = Landmark(LandmarkType.POINT, at.x, at.y, xx=spread, yy=spread, confirmations=1)
     return with_landmark(local_map, free_index(local_map.landmarks), post)
 
 

@@ -123,7 +123,8 @@ def monitor_collision(
             if is_confirmed(landmark, mapping):
                 a = start_point(landmark)
                 by_map = min(by_map, free_towards(motion, sweep, a, end_point(landmark), params.map_distance, 0.0))
-        by_map = min(by_map, min(free_by_echo(motion, sweep, echo, False, params) for echo in echoes))
+        by_echoes = min(free_by_echo(motion, sweep, echo, False, params) for echo in echoes)
+        by_map = min(by_map, by_echoes)
         free = min(by_map, min(free_by_echo(motion, sweep, echo, True, params) for echo in echoes))
     slowing = SLOWING_FRACTION * motion.deceleration
     limit = NO_LIMIT if free >= NO_LIMIT else speed_for_distance(free, motion.delay, slowing)
@@ -141,10 +142,11 @@ def free_by_echo(
     """
     if not echo.is_present or echo.is_unexplained != unexplained:
         return NO_LIMIT
-    if line_distance(side_start(echo), side_end(echo), sweep.here, sweep.outline) <= 0.0:
-        echo = echo._replace(surface=EchoSurface())
+    inside = line_distance(side_start(echo), side_end(echo), sweep.here, sweep.outline) <= 0.0
+    start = Point(echo.x, echo.y) if inside else side_start(echo)
+    end = Point(echo.x, echo.y) if inside else side_end(echo)
     kept = params.echo_distance if unexplained else params.map_distance
-    return free_towards(motion, sweep, side_start(echo), side_end(echo), kept, echo.closing_speed)
+    return free_towards(motion, sweep, start, end, kept, echo.closing_speed if unexplained else 0.0)
 
 
 def free_towards(

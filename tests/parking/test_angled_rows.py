@@ -9,11 +9,19 @@ from controller_fmu.common.external_slot import SlotKind
 from controller_fmu.interface import Reason
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.outline import pose_along_arc, vehicle_outline
-from controller_fmu.parking.map.landmark import LandmarkType, end_point, length_of, start_point
+from controller_fmu.parking.map.free_space import MAX_RAYS, RAY_SPACING, Ray
+from controller_fmu.parking.map.landmark import (
+    MAX_LANDMARKS,
+    Landmark,
+    LandmarkType,
+    end_point,
+    length_of,
+    start_point,
+)
 from controller_fmu.parking.map.local_map import LandmarkMap, update_map
 from controller_fmu.parking.map.oblique_side import ObliqueUpdate, update_oblique_sides
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.measurement.sensor import Measurement, reading_status, sensor_pose
+from controller_fmu.parking.measurement.sensor import Measurement, SensorPose, reading_status, sensor_pose
 from controller_fmu.parking.slots.angled_row import find_angled_row
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot
 from controller_fmu.parking.slots.goal import goal_pose
@@ -116,6 +124,28 @@ def test_a_row_is_angled_by_its_road_whatever_the_way_past_is(
     assert (slot.type, slot.reason, slot.is_nose_in) == (SlotType.PERPENDICULAR, Reason.NONE, True)
     into = found.row.frame.heading - 0.5 * math.pi
     assert abs(into + math.radians(degrees)) < math.radians(3.0)
+
+
+@pytest.mark.parametrize("places", [(-15.2, -11.2, -2.4), (-16.0, -6.4)])
+@pytest.mark.parametrize("bend", [30.0, -30.0])
+def test_cars_along_a_road_that_bends_are_no_angled_row(bend: float, places: tuple[float, ...]) -> None:
+    """They are turned by where they stand; the vehicle has driven 2 m beside their arc."""
+    cars = [arc_pose(bend, place, 0.0) for place in places]
+    sides = [
+        Landmark(LandmarkType.SEGMENT, x, y, turn, hh=3e-5, start=-0.5 * LENGTH, end=0.5 * LENGTH, confirmations=20)
+        for x, y, turn in cars
+    ]
+    known = [side._replace(start_known=True, end_known=True) for side in sides]
+    driven = [arc_pose(bend, -RAY_SPACING * number, 2.0) for number in reversed(range(MAX_RAYS))]
+    rays = tuple(Ray(SensorPose(x, y, math.sin(turn), -math.cos(turn)), 2.0, True) for x, y, turn in driven)
+    landmarks = (*known, *(Landmark(),) * (MAX_LANDMARKS - len(known)))
+    assert find_angled_row(landmarks, rays, driven[-1], -1.0, MappingParams()).used == 0
+
+
+def arc_pose(radius: float, along: float, beside: float) -> Pose:
+    """The pose ``beside`` an arc of ``radius`` [m], left positive, that passes the origin along x."""
+    turn = along / radius
+    return Pose((radius - beside) * math.sin(turn), radius - (radius - beside) * math.cos(turn), turn)
 
 
 def test_the_sides_of_oblique_cars_are_mapped_where_the_boundary_of_the_cone_meets_them() -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
-from controller_fmu.parking.map.free_space import Ray, is_free
+from controller_fmu.parking.map.free_space import Ray, is_free, path_curvature
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import (
@@ -114,7 +114,7 @@ def find_angled_row(
     line = _line_of(corners, side)
     sides = _side_direction(corners, line)
     tilt = _square_angle(sides.heading - side * math.atan(line.slope))
-    if tilt * tilt < sides.gate + params.gate * _line_variance(corners, line):
+    if abs(tilt) < _largest_tilt(corners, line, sides.gate, path_curvature(rays), params.gate):
         return SlotRow(vehicle, side)
     into = sides.heading - 0.5 * PI if side < 0.0 else sides.heading
     forwards = _row_into(corners, line, rays, SlotRow(vehicle, side), into, 1.0)
@@ -157,13 +157,22 @@ def _corners(
     return corners
 
 
-def _line_variance(corners: tuple[RoadCorner, ...], line: RoadLine) -> float:
-    """Return the variance [rad2] of a line's direction: of corners as unevenly out as cars stand in a row."""
+def _largest_tilt(
+    corners: tuple[RoadCorner, ...], line: RoadLine, sides_gate: float, curvature: float, gate: float
+) -> float:
+    """Return by how much [rad] sides may be turned against the line of a row that is not angled.
+
+    ``sides_gate``: of their own square error. The line is known as well as cars stand evenly in a row; beside a path of
+    ``curvature`` [1/m] cars are turned by their distance from the middle of the row, up to half of its length.
+    """
     sums = PointSums()
     for corner in corners:
         if _is_on_line(corner, line):
             sums = add_point(sums, corner.along, corner.deep)
-    return STAGGER_SIGMA * STAGGER_SIGMA / max(about_mean(sums).xx, 1.0e-9)
+    found = about_mean(sums)
+    line_variance = STAGGER_SIGMA * STAGGER_SIGMA / max(found.xx, 1.0e-9)
+    bend = abs(curvature) * math.sqrt(3.0 * found.xx / max(found.n, 1))
+    return math.sqrt(sides_gate + gate * line_variance) + bend
 
 
 class SideDirection(NamedTuple):

@@ -247,8 +247,9 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         return _with_pose_request(memory, inputs, params)
     slot = slot_in_map(memory, pose, params)
     is_too_shallow = slot.depth < least_depth(slot, outline, params.slot) and log_likelihood_ratio(slot) > -LOG_TEN
-    memory = memory._replace(search=with_slot_type(memory.search, is_too_shallow, params))
-    slot = slot_in_map(memory, pose, params)
+    if is_too_shallow:
+        memory = memory._replace(search=with_slot_type(memory.search, True, params))
+        slot = slot_in_map(memory, pose, params)
     beside = tuple(away_from_vehicle(landmark, outline, pose) for landmark in landmarks)
     mapped = obstacle_map(beside, slot, outline, pose, _free_road(memory, params), params.mapping)
     memory = _with_plan(memory, mapped, goal_pose(slot, outline, params.slot), inputs, params)

@@ -195,15 +195,13 @@ def _argument(parameter: inspect.Parameter, text: str) -> float:
 
 def _value_of_factor(factor: "Factor", text: str) -> float:
     """Return the value that a text means: one of the range of a factor, or the number of one of its choices."""
-    from modelkit.signal import Signal
     from modelkit.variables import Variable
     from orchestrator.inputs.text.quantities import scalar
 
     if text in factor.choices:
         return float(factor.choices.index(text))
     if not factor.choices:
-        signal = Signal(factor.unit, factor.text, factor.low, factor.high)
-        return float(scalar(text, Variable(factor.name, float, signal, factor.nominal), file="--set"))
+        return float(scalar(text, Variable(factor.name, float, factor.signal, factor.nominal), file="--set"))
     are_numbers = any(name.isdigit() for name in factor.choices)
     if are_numbers or not (text.isascii() and text.isdigit() and int(text) < len(factor.choices)):
         expected = f"expected one of {', '.join(dict.fromkeys(factor.choices))}"

@@ -101,12 +101,9 @@ def _is_within(
 def _labels(study: Study) -> Iterator[TableColumn]:
     factors = {factor.name: factor for factor in study.space.factors} if study.space is not None else {}
     for key, words in study.design.labels.items():
-        kind, factor = KINDS[words.dtype.kind], factors.get(key)
-        yield (
-            TableColumn(key, kind, Signal("1", ""))
-            if factor is None
-            else TableColumn(key, kind, Signal(factor.unit, factor.text, factor.low, factor.high), factor.choices)
-        )
+        factor = factors.get(key)
+        signal, choices = (Signal("1", ""), ()) if factor is None else (factor.signal, factor.choices)
+        yield TableColumn(key, KINDS[words.dtype.kind], signal, choices)
 
 
 def _number(name: str, item: Metric) -> TableColumn:

@@ -42,7 +42,15 @@ BEND = (
     Factor("bend_radius", "m", 30.0, 100.0, 100.0, "of the row along the bend"),
 )
 ANGLED = (
-    Factor("angled", "1", 0, 0, 5, "angled row, which opens to who parks", (*("no",) * 4, "nose in", "tail in")),
+    Factor(
+        "angled",
+        "1",
+        0,
+        0,
+        5,
+        "row at an angle to the road, and how the vehicle parks in it",
+        (*("no",) * 4, "nose in", "tail in"),
+    ),
     Factor("lean", "deg", 10.0, 30.0, 45.0, "of the cars of an angled row, from perpendicular"),
 )
 WIDER = {

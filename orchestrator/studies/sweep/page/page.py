@@ -23,6 +23,7 @@ from orchestrator.studies.sweep.page.statistics import (
     maps,
     outcome_counts,
     outcome_kind,
+    reasons,
     success_mask,
     value_text,
     varying_columns,
@@ -207,7 +208,7 @@ def _influences(table: Table) -> str:
 
 def _worst(table: Table) -> str:
     rows = []
-    keys = varying_columns(table)
+    keys, why = varying_columns(table), reasons(table)
     for number in worst(table, WORST_ROWS):
         row = table.row(number)
         replay = table.path.parent / REPLAYS.format(number) / "report.html"
@@ -216,7 +217,7 @@ def _worst(table: Table) -> str:
         rows.append(
             (
                 str(number),
-                f"{_pill(row[table.ends])} {escape(row['reason'])}",
+                f"{_pill(row[table.ends])} {escape(why[number])}",
                 escape(deciding_limit(table, number)),
                 _finite("{:+.1f} cm", 100.0 * row["final.lateral_error"]),
                 _finite("{:+.2f} deg", row["final.heading_error"] / RAD_PER_DEGREE),

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from modelkit.signal import Signal
 from orchestrator.simulation.cosim.fmu_instance import Array
 
 Seeds = NDArray[np.int64]
@@ -23,6 +24,11 @@ class Factor(NamedTuple):
     text: str
     choices: Sequence[str] = ()
     """Names of the values 0, 1, 2 ..., if it has but these."""
+
+    @property
+    def signal(self) -> Signal:
+        """Return unit, meaning and range."""
+        return Signal(self.unit, self.text, self.low, self.high)
 
     def mild(self) -> "Factor":
         """Return the factor with half the range, about its nominal value; choices stay."""

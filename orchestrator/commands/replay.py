@@ -8,11 +8,11 @@ from fmus.installation import missing_package
 from orchestrator.inputs.text.console import console
 from orchestrator.inputs.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, PARKED, BadInput
 from orchestrator.session.terminal import print_summary
-from orchestrator.simulation.cosim.kinds import KINDS
+from orchestrator.simulation.cosim.kinds import KINDS, fastest_kind
 
 EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 17
-  apa replay my-study.parquet --row 17 --fmus native --out /tmp/again
+  apa replay my-study.parquet --row 17 --fmus none --out /tmp/again
 
 writes DIR/scenario.yaml with all values of the row, and the files of `apa run`; reports whether the run is identical
 to the row
@@ -24,7 +24,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("table", type=Path, metavar="TABLE", help="table of a study, a .parquet file")
     parser.add_argument("--row", type=int, required=True, metavar="N", help="number of the run, from 0")
     parser.add_argument(
-        "--fmus", choices=(*KINDS, "none"), default="none", help="kind of FMU (default: none, in process)"
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=fastest_kind(),
+        help="kind of FMU (default: native where it can be built, else none)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")

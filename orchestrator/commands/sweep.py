@@ -14,7 +14,7 @@ from orchestrator.inputs.text.errors import INTERRUPTED, PARKED, BadInput, forma
 from orchestrator.inputs.text.failures import verdict_stands
 from orchestrator.inputs.text.locked_folder import lock_folder
 from orchestrator.presentation.drawing.save import check_picture
-from orchestrator.simulation.cosim.kinds import KINDS
+from orchestrator.simulation.cosim.kinds import KINDS, fastest_kind
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
@@ -297,4 +297,4 @@ def _replay_worst(path: Path, count: int) -> None:
 
     table = Table(path)
     for number in worst(table, count):
-        repeat_row(table, number, folder_of_row(path, number))
+        repeat_row(table, number, folder_of_row(path, number), fastest_kind())

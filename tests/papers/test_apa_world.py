@@ -255,5 +255,5 @@ def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:
     assert ends.PARKED in ended
     assert {0.0, 1.0} == set(table.column("asked").tolist()) == set(table.column("valid").tolist())
     assert ((touched != "") == np.isfinite(table.column("touched.x"))).all()
-    again = repeat_row(table, int(np.flatnonzero(ended == ends.PARKED)[0]), tmp_path / "again", pages=False)
+    again = repeat_row(table, int(np.flatnonzero(ended == ends.PARKED)[0]), tmp_path / "again", "none", pages=False)
     assert again.different == []

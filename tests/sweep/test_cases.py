@@ -125,7 +125,7 @@ def test_rows_of_such_a_study_come_back(tmp_path: Path) -> None:
     assert table.labels == ["who", "number"]
     assert table.column("who").tolist() == ["slow", "long", "moved"]
     for number in range(3):
-        again = repeat_row(table, number, tmp_path / "row", pages=False)
+        again = repeat_row(table, number, tmp_path / "row", "none", pages=False)
         assert again.different == []
 
 

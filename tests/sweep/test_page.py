@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fmus.native.compilers import can_compile
 from orchestrator.cli import main
 from orchestrator.evaluation.verdict.confidence import wilson
 from orchestrator.evaluation.verdict.limit_text import requirement_text
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.readable import readable
+from orchestrator.presentation.log.read_log import read_info
 from orchestrator.studies.sweep.job import chunk_scenario
 from orchestrator.studies.sweep.page.explorer import explorer_data
 from orchestrator.studies.sweep.page.figures import SCALE, colour, histogram
@@ -79,6 +81,12 @@ def test_the_page_needs_nothing_but_itself(folder: Any) -> None:
     assert all(not value.startswith(("http", "//")) for _, found in tags for value in found.values() if value)
     assert EVIL not in text
     assert len(text) < 300_000
+
+
+@pytest.mark.skipif(not can_compile(), reason="no C compiler")
+def test_runs_are_replayed_with_the_native_models(folder: Any) -> None:
+    """In process a run of the parking controller takes some 25 times as long."""
+    assert {fmu["kind"] for fmu in read_info(next(folder.glob("row-*/run.mcap")))["fmus"]} == {"native"}
 
 
 def test_every_cell_of_the_map_tells_its_numbers(table: Any) -> None:

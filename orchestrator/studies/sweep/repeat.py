@@ -41,7 +41,7 @@ def folder_of_row(table: Path, number: int) -> Path:
     return table.parent / f"row-{number}"
 
 
-def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> ReplayedRow:
+def repeat_row(table: Table, number: int, out: Path, kind: str, *, pages: bool = True) -> ReplayedRow:
     """Run row ``number`` again, with its results in ``out``. Raises ``BadInput`` if there is none."""
     with lock_folder(out):
         scenario = write_scenario(table, number, out / "scenario.yaml")

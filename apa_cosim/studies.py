@@ -12,6 +12,7 @@ from apa_cosim.runs import Run, run
 from orchestrator.commands.sweep import select_study
 from orchestrator.inputs.text.errors import RunError, suggestion
 from orchestrator.inputs.text.locked_folder import lock_folder
+from orchestrator.simulation.cosim.kinds import fastest_kind
 from orchestrator.studies.sweep.repeat import write_scenario
 from orchestrator.studies.sweep.sweep import Options
 from orchestrator.studies.sweep.sweep import sweep as run_study
@@ -56,7 +57,7 @@ class StudyTable:
         """Return one row's run again, with all signals: the same bits. Raises ``BadInput`` for a row it has not."""
         with tempfile.TemporaryDirectory() as folder:
             scenario = write_scenario(self._table, row, Path(folder) / "scenario.yaml")
-        return run(scenario, fmus="none")
+        return run(scenario, fmus=fastest_kind())
 
     def __repr__(self) -> str:
         return f"<StudyTable {self.path}: {len(self)} runs>"

@@ -11,6 +11,7 @@ import pytest
 
 import apa_cosim as apa
 from orchestrator.inputs.text.errors import BadInput
+from orchestrator.simulation.cosim.kinds import fastest_kind
 
 PINNED = {
     "compare": "(a, b, *, absolute, relative, time, signals)",
@@ -153,3 +154,4 @@ def test_a_study_is_a_table_and_any_row_a_run(tmp_path: Path) -> None:
     assert 0.0 < table.share() < 1.0
     row = table.replay(1)
     assert (row.outcome, row.summary.final.x) == (table["outcome"][1], table["final.x"][1])
+    assert {fmu["kind"] for fmu in row.recording.info["fmus"]} == {fastest_kind()}

@@ -8,18 +8,23 @@ import numpy as np
 import pytest
 import yaml
 
-from orchestrator.cli import main
+from fmus.native.compilers import can_compile
+from orchestrator.cli import main, parser
 from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.models import MODELS
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
-from orchestrator.session.session import run_scenario
-from orchestrator.studies.falsification.begin import _open
+from orchestrator.session.session import SimulationResult, run_scenario
+from orchestrator.studies.falsification import begin
 from orchestrator.studies.falsification.counterexamples import BITS, NOTES, rerun_counterexamples
 from orchestrator.studies.falsification.objective import objective_of
 from orchestrator.studies.falsification.shrink import away
 from orchestrator.studies.falsification.subject import Subject, _read_part
 from orchestrator.studies.falsification.written import space_of
+from orchestrator.studies.sweep.job import Chunk, make_job
 from orchestrator.studies.sweep.study.read_study import read_study
+from tests.fmi.built import native_fmu_of
 
 RUNS = {
     "n": 64,
@@ -163,12 +168,35 @@ def test_what_cannot_be_hunted_is_refused(study: Any, capsys: pytest.CaptureFixt
     assert "expected a number from 50" in capsys.readouterr().err
 
 
+@pytest.mark.skipif(not can_compile(), reason="no C compiler")
+def test_beside_their_controller_our_vehicle_is_native(study: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the bits of the models in process, which ``--fmus none`` takes."""
+    made = read_study(study(TRUE), {"stop_time": "2"})
+    theirs = str(native_fmu_of(MODELS["controller"]))
+    used: list[tuple[str, set[str]]] = []
+
+    def drive(scenario: Scenario, files: Any, *, kind: str, foreign: Any) -> SimulationResult:
+        used.append((kind, set(files)))
+        return run_scenario(scenario, files, kind=kind, foreign=foreign)
+
+    monkeypatch.setattr(begin, "run_scenario", drive)
+    job, seeds = make_job(made), made.design.seeds[:2]
+    rows = [
+        begin._task(made, parser().parse_args(["falsify", "drivers.yaml", "--controller", theirs, *words])).work(
+            job, Chunk(0, 0, made.design.values[:2], seeds)
+        )
+        for words in ([], ["--fmus", "none"])
+    ]
+    assert used == [("native", set(MODELS))] * 2 + [("none", set())] * 2
+    assert np.array_equal(rows[0], rows[1], equal_nan=True)
+
+
 def test_resume_of_a_hunt_that_has_not_begun_begins_it(tmp_path: Path) -> None:
-    _open(tmp_path / "journal", "{}", resume=True)
+    begin._open(tmp_path / "journal", "{}", resume=True)
     assert (tmp_path / "journal" / "about.json").read_text() == "{}"
     (tmp_path / "journal" / "about.json").write_bytes(b"\xff")
     with pytest.raises(BadInput, match="another description, which is damaged"):
-        _open(tmp_path / "journal", "{}", resume=True)
+        begin._open(tmp_path / "journal", "{}", resume=True)
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_modes_of_their_own_decide_in_a_table_too(desk: Path) -> None:
     study = read_study(str(desk / "own-study.yaml"), {"stop_time": "3"})
     job = make_job(study)
     chunk = Chunk(0, 0, study.design.values[:1], study.design.seeds[:1])
-    columns = fill_columns(study, job, chunk, run_recorded(job, chunk, "none", None))
+    columns = fill_columns(study, job, chunk, run_recorded(job, chunk, "none"))
     assert (columns["outcome"][0], columns["reason"][0]) == ("not_parked", "stop time reached in first")
 
 

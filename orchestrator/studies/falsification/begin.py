@@ -3,15 +3,18 @@
 import argparse
 import json
 import shutil
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
 from fmus.files import write_whole
+from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.session.foreign import ImportedFmus, bind_parameters, fmu_of, parameters_of
 from orchestrator.session.session import run_scenario
-from orchestrator.simulation.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim.fmu_files import fmu_files, sources_hash
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.kinds import fastest_kind
 from orchestrator.studies.falsification.objective import objective_of
 from orchestrator.studies.falsification.subject import Subject
 from orchestrator.studies.falsification.written import space_of
@@ -69,18 +72,25 @@ def _open(journal: Path, about: str, *, resume: bool) -> None:
 def _task(study: Study, arguments: argparse.Namespace) -> ChunkTask:
     if arguments.controller is None:
         return choose_task(study.scenario, arguments.fmus)
+    kind = arguments.fmus or fastest_kind()
+    if kind != "none":
+        fmu_files(kind, say)
     files = {"controller": str(fmu_of(str(arguments.controller)))}
-    return ChunkTask(partial(run_foreign, files=files), "their controller", RECORDED_CHUNK, False)
+    return ChunkTask(partial(run_foreign, files=files, kind=kind), "their controller", RECORDED_CHUNK, False)
 
 
-def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
-    """Return one row of measures per run of ``chunk`` with third-party FMUs; what they do not report is NaN."""
+def run_foreign(job: Job, chunk: Chunk, files: Mapping[str, str], kind: str) -> Array:
+    """Return one row of measures per run of ``chunk`` with third-party FMUs; what they do not report is NaN.
+
+    What they do not replace is our FMU of ``kind`` (``none``: our model in process).
+    """
     foreign = ImportedFmus({name: Path(path) for name, path in files.items()})
+    ours = {} if kind == "none" else fmu_files(kind)
     own = {instance: parameters_of(path, instance) for instance, path in foreign.files.items()}
 
     def row(number: int) -> Array:
         scenario, _ = bind_parameters(chunk_scenario(job, chunk, number), own)
-        ran = run_scenario(scenario, None, foreign=foreign)
+        ran = run_scenario(scenario, ours, kind=kind, foreign=foreign)
         return row_of(ran.recording, scenario, job.measures)
 
     return rows_by(row, len(chunk.seeds))

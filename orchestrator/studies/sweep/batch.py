@@ -5,9 +5,8 @@ through the Python master, on FMUs or on the models in process.
 """
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -31,6 +30,7 @@ from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import RESOURCES, NotRunError
 from orchestrator.inputs.text.failures import reason_of
 from orchestrator.session.session import run_scenario
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.fmu_instance import Array
 from orchestrator.studies.sweep.disturbed import fault_numbers, fault_receivers
 from orchestrator.studies.sweep.job import Chunk, Job, arrays, chunk_scenario
@@ -55,13 +55,16 @@ def own_choices(job: Job, scenario: Scenario, parameters: Array) -> Choices | No
     return choices_of(scenario, parameters) if job.runs >= STUDY_CODE_FROM else None
 
 
-def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
-    """Return one row of measures per run of ``chunk``, read off its recording."""
-    paths = None if files is None else {name: Path(path) for name, path in files.items()}
+def run_recorded(job: Job, chunk: Chunk, kind: str) -> Array:
+    """Return one row of measures per run of ``chunk``, read off its recording.
+
+    The FMUs of ``kind`` (``none``: models in process) are those of the machine that runs them.
+    """
+    files = {} if kind == "none" else fmu_files(kind)
 
     def row(number: int) -> Array:
         scenario = chunk_scenario(job, chunk, number)
-        ran = run_scenario(scenario, paths, kind=kind)
+        ran = run_scenario(scenario, files, kind=kind)
         return row_of(ran.recording, scenario, job.measures)
 
     return rows_by(row, len(chunk.seeds))

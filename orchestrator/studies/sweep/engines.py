@@ -28,9 +28,12 @@ from fmus.files import live_in, own_room
 from fmus.installation import missing_package
 from fmus.native.compilers import can_compile
 from orchestrator.inputs.scenario.scenario import Scenario
+from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
+from orchestrator.simulation.cosim.fmu_files import fmu_files
 from orchestrator.simulation.cosim.fmu_instance import Array
+from orchestrator.simulation.cosim.kinds import fastest_kind
 from orchestrator.studies.sweep.batch import run_batch, run_recorded
 from orchestrator.studies.sweep.engine import (
     CHUNKS_PER_WORKER,
@@ -57,23 +60,18 @@ IN_HAND = 1.0
 def choose_task(scenario: Scenario, fmus: str | None) -> ChunkTask:
     """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master.
 
-    ``fmus``: with FMUs of this kind instead; ``none``: with the models in process.
+    ``fmus``: with FMUs of this kind instead; ``none``: with the models in process. By default the master has the
+    native ones.
     """
-    in_process = ChunkTask(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
     if fmus == "none":
-        return in_process
+        return ChunkTask(partial(run_recorded, kind="none"), "models in process", RECORDED_CHUNK, False)
     if fmus is not None:
-        from orchestrator.simulation.cosim.fmu_files import fmu_files
-
-        files = {name: str(path) for name, path in fmu_files(fmus).items()}
-        return ChunkTask(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
-    why = why_not_compiled(scenario)
-    if not why and not can_compile():
-        why = "there is no C compiler"
-    if why and scenario.system is not None and can_compile() and set(files_of(scenario)) < set(scenario.places):
-        return choose_task(scenario, "native")._replace(note=f"{why}: every run goes through the Python master")
+        fmu_files(fmus, say)
+        return ChunkTask(partial(run_recorded, kind=fmus), f"{fmus} FMUs", RECORDED_CHUNK, False)
+    why = why_not_compiled(scenario) or ("" if can_compile() else "there is no C compiler")
     if why:
-        return in_process._replace(note=f"{why}: every run goes through the Python master")
+        kind = fastest_kind() if set(files_of(scenario)) < set(scenario.places) else "none"
+        return choose_task(scenario, kind)._replace(note=f"{why}: every run goes through the Python master")
     return ChunkTask(run_batch, "compiled batch", BATCH_CHUNK, True)
 
 

@@ -37,6 +37,14 @@ def bench(*words: Any) -> int:
     return main(["bench", "parking", *map(str, words)])
 
 
+def test_scenes_have_a_known_goal_that_can_be_reached(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shipped = scenes.valet_scenarios()
+    assert {"valet-dead-end", "valet-parallel", "valet-pull-out"} <= set(shipped)
+    assert not {"valet-search-45", "valet-no-path", "valet-blocked"} & set(shipped)
+    assert bench("valet-search-45", "--out", tmp_path) == 2
+    assert "controller.search.active: true: the benchmark plans to a known goal" in capsys.readouterr().err
+
+
 def test_a_scene_is_planned_and_driven_and_its_row_is_kept(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

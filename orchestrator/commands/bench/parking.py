@@ -17,7 +17,7 @@ from orchestrator.studies.benchmark.scenes import ROWS, SceneRow, rows_of, scene
 from orchestrator.studies.benchmark.table import as_json, csv_text, figures_of, table_lines
 
 EXAMPLES = """examples:
-  apa bench parking                              the shipped scenarios valet-*
+  apa bench parking                              the shipped scenarios valet-* with a known goal
   apa import tpcap cases --out tpcap             scenes of TPCAP, ParkBench: see apa import --help
   apa bench parking tpcap parkbench --out results
   apa bench parking parkbench --body kinematic --json > parkbench.json

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from fmus.contents.description import project_version
 from fmus.files import write_whole
 from orchestrator.inputs.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BadInput
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import sources_hash
@@ -18,6 +19,8 @@ from orchestrator.studies.benchmark.optimal.reference import find_optimum
 from orchestrator.studies.benchmark.planning import FoundPlan, plan_scene
 
 VALET_PREFIX = "valet-"
+SEARCH = "search.active"
+"""Parameter of the controller: it looks for its slot."""
 ROWS = "rows"
 SCENARIO_SUFFIXES = (".yaml", ".yml")
 
@@ -85,14 +88,24 @@ def scenes_in(places: Sequence[str], bodies: Sequence[str], optimal: bool = Fals
 
 
 def valet_scenarios() -> list[str]:
-    """Return the names of the shipped scenarios with a known goal or angled rows."""
-    return [name for name in scenario_names() if name.startswith(VALET_PREFIX)]
+    """Return the names of the shipped scenarios whose goal is known and can be reached."""
+    loaded = {name: load_scenario(name) for name in scenario_names() if name.startswith(VALET_PREFIX)}
+    return [name for name, item in loaded.items() if item.expected_outcome == item.success and not detects_slot(item)]
+
+
+def detects_slot(scenario: Scenario) -> bool:
+    """Return whether the controller searches for its slot: then there is nothing to plan until the vehicle moves."""
+    return bool(scenario.parameters_for("controller").get(SEARCH))
 
 
 def _scene(group: str, name: str, asked: list[Any]) -> Scene:
     scenario = load_scenario(name)
     if scenario.target is None:
         raise BadInput("this scenario has no target to plan a path to", file=scenario.file, key="target")
+    if detects_slot(scenario):
+        raise BadInput(
+            "true: the benchmark plans to a known goal; set it to false", file=scenario.file, key=f"controller.{SEARCH}"
+        )
     key = hashlib.sha256(json.dumps([scenario.model_dump_json(), *asked]).encode()).hexdigest()[:32]
     return Scene(scenario.name, group, name, sum(map(len, scenario.obstacles)), key)
 

@@ -18,6 +18,7 @@ from orchestrator.evaluation.verdict.limit_text import requirement_text
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.readable import readable
 from orchestrator.presentation.log.read_log import read_info
+from orchestrator.studies.sweep import table as table_module
 from orchestrator.studies.sweep.job import chunk_scenario
 from orchestrator.studies.sweep.page.explorer import explorer_data
 from orchestrator.studies.sweep.page.figures import SCALE, colour, histogram
@@ -87,6 +88,26 @@ def test_the_page_needs_nothing_but_itself(folder: Any) -> None:
 def test_runs_are_replayed_with_the_native_models(folder: Any) -> None:
     """In process a run of the parking controller takes some 25 times as long."""
     assert {fmu["kind"] for fmu in read_info(next(folder.glob("row-*/run.mcap")))["fmus"]} == {"native"}
+
+
+def test_the_explorer_reads_each_part_of_a_table_and_its_scenario_once(
+    folder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table, read = Table(folder / "trial.parquet"), Counter[Any]()
+
+    def counted(made: Any, name: Any) -> Any:
+        def call(*arguments: Any, **named: Any) -> Any:
+            read[name or arguments] += 1
+            return made(*arguments, **named)
+
+        return call
+
+    monkeypatch.setattr(table._file, "read_row_group", counted(table._file.read_row_group, None))
+    monkeypatch.setattr(table_module, "Scenario", counted(Scenario, "scenario"))
+    for number in range(table.count):
+        deciding_limit(table, number)
+    assert read == Counter(["scenario", *((group,) for group in range(table._file.num_row_groups))])
+    assert table._file.num_row_groups > 1
 
 
 def test_every_cell_of_the_map_tells_its_numbers(table: Any) -> None:

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pydantic import BaseModel
 
+from orchestrator.inputs.scenario.requirements import Requirement
+from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.console import say
 from orchestrator.inputs.text.errors import BadInput, why_no_file
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -52,7 +55,8 @@ class Table:
             raise BadInput(why_no_file(path), file=path)
         try:
             self._file = pq.ParquetFile(path, page_checksum_verification=True)
-            metadata = self._file.schema_arrow.metadata or {}
+            self._schema: pa.Schema = self._file.schema_arrow
+            metadata = self._schema.metadata or {}
             checksum, carried, _ = sum_of(path.read_bytes())
         except (OSError, ValueError, pa.ArrowException) as error:
             raise BadInput(f"cannot be read as a table: {_first_line(error)}", file=path) from error
@@ -74,6 +78,12 @@ class Table:
             text = f"does not say what its study is ({type(error).__name__}); it is damaged or of another version"
             raise BadInput(text, file=path) from error
         self.count = int(self._file.metadata.num_rows)
+        self._group: tuple[int, pa.Table] | None = None
+
+    @cached_property
+    def requirements(self) -> list[Requirement]:
+        """Return the requirements of the study's scenario."""
+        return list(Scenario(**self.job.scenario).requirements)
 
     def column(self, name: str) -> Any:
         """Return a column as an array; outcomes and reasons as texts. Raises ``BadInput`` if it is damaged."""
@@ -89,11 +99,11 @@ class Table:
 
     def names(self) -> list[str]:
         """Return the names of the columns."""
-        return list(self._file.schema_arrow.names)
+        return list(self._schema.names)
 
     def note(self, name: str) -> tuple[str, str, dict[str, str]]:
         """Return unit, meaning and states (number as text -> name) of a column."""
-        metadata = self._file.schema_arrow.field(name).metadata or {}
+        metadata = self._schema.field(name).metadata or {}
         states: dict[str, str] = json.loads(metadata.get(b"states", b"{}"))
         return metadata.get(b"unit", b"1").decode(), metadata.get(b"text", b"").decode(), states
 
@@ -105,10 +115,16 @@ class Table:
             rows = self._file.metadata.row_group(group).num_rows
             if number < rows:
                 with self._report_damage(f"row {number}"):
-                    found: dict[str, Any] = self._file.read_row_group(group).slice(number, 1).to_pylist()[0]
+                    found: dict[str, Any] = self._row_group(group).slice(number, 1).to_pylist()[0]
                     return found
             number -= rows
         raise AssertionError("rows do not add up")
+
+    def _row_group(self, group: int) -> pa.Table:
+        """Return a part of the table; the last one is kept, as who asks for a row often asks for the next."""
+        if self._group is None or self._group[0] != group:
+            self._group = group, self._file.read_row_group(group)
+        return self._group[1]
 
     def chunk(self, number: int) -> Chunk:
         """Return one row as the design that made it."""

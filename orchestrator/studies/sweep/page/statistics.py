@@ -11,7 +11,7 @@ from scipy.stats import rankdata
 from orchestrator.evaluation.verdict.conditions import CONDITIONS
 from orchestrator.evaluation.verdict.confidence import wilson
 from orchestrator.evaluation.verdict.limit_text import requirement_text
-from orchestrator.inputs.scenario.scenario import DONE, MISSED, SUCCESS, Scenario
+from orchestrator.inputs.scenario.scenario import DONE, MISSED, SUCCESS
 from orchestrator.inputs.text.quantities import RAD_PER_DEGREE
 from orchestrator.inputs.text.readable import readable
 from orchestrator.simulation.cosim.fmu_instance import Array
@@ -136,7 +136,7 @@ def deciding_limit(table: Table, number: int) -> str:
     """
     row = table.row(number)
     worst_share, text = 0.0, ""
-    for limit in Scenario(**table.job.scenario).requirements:
+    for limit in table.requirements:
         value = row.get(limit.signal)
         if not limit.required or value is None or isinstance(limit.limit, str):
             continue

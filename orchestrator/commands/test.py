@@ -38,10 +38,11 @@ EXAMPLES = """examples:
   apa test catalogue --out results
   apa test "catalogue/gbt*" --controller their.fmu --junit results/junit.xml
 
-A scenario passes if it has its expected outcome and, for parked and finished, meets its required limits and those of
---requirements. A third-party FMU needs the variable names, types and units of the FMU that it replaces, or a scenario
-whose key system connects it. A missing unit is assumed to be the SI unit of the variable. Parameters of the scenario
-that the FMU lacks are omitted and listed; parameters of the FMU are set by --set controller.THEIR_GAIN=3.
+A scenario passes if it has its expected outcome, meets its own required limits if it is to be parked or finished, and
+meets those of --requirements in any case. A third-party FMU needs the variable names, types and units of the FMU that
+it replaces, or a scenario whose key system connects it. A missing unit is assumed to be the SI unit of the variable.
+Parameters of the scenario that the FMU lacks are omitted and listed; parameters of the FMU are set by --set
+controller.THEIR_GAIN=3.
 
 apa test catalogue tests clauses of parking standards; apa test catalogue/gbt41630 tests one standard.
 

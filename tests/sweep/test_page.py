@@ -18,6 +18,7 @@ from orchestrator.evaluation.verdict.limit_text import requirement_text
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.readable import readable
 from orchestrator.presentation.log.read_log import read_info
+from orchestrator.studies.parking.parking_world import study as parking_world
 from orchestrator.studies.sweep import table as table_module
 from orchestrator.studies.sweep.job import chunk_scenario
 from orchestrator.studies.sweep.page.explorer import explorer_data
@@ -248,6 +249,14 @@ def test_a_study_that_judges_its_runs_is_shown_by_its_own_judgement(judged: Tabl
     assert f"<dt>parked of valid</dt><dd>{(valid & parked).sum()} of {valid.sum()}</dd>" in page
     assert sum(int(item.done.sum()) for item in maps(judged)) == ends["parked"]
     assert [item.title for item in maps(judged)] == ["parallel", "perpendicular"]
+
+
+def test_a_group_without_runs_has_no_share(judged: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    everything = np.ones(judged.count, dtype=bool)
+    monkeypatch.setattr(parking_world, "groups_of", lambda table: {"everything": everything, "nothing": ~everything})
+    names = [line.split(":")[0] for line in parking_world.shares_of(judged)]
+    assert "parked of valid, everything" in names
+    assert "parked of valid, nothing" not in names
 
 
 def test_factors_drawn_from_a_range_explain_no_run_by_itself(judged: Table) -> None:

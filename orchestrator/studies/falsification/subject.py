@@ -46,7 +46,7 @@ class Stopped(Exception):  # noqa: N818 - said as it is
 
 
 class Subject:
-    """What is result, in a study, and who does the runs."""
+    """What is searched in a study, and who does the runs."""
 
     def __init__(self, study: Study, space: Space, objective: Objective, engine: Engine, journal: Path) -> None:
         self.space, self.objective, self.runs = space, objective, 0
@@ -126,7 +126,7 @@ def _read_part(part: Path, shares: Array, seeds: Seeds) -> Evaluations | None:
         return None
     whole = margins.shape == words.shape == seeds.shape
     if not whole or margins.dtype != np.float64 or words.dtype.kind != "U" or np.isnan(margins).any():
-        say(f"apa: warning: {part}: is not what a hunt writes; its runs are made again")
+        say(f"apa: warning: {part}: has other contents than a search writes; its runs are made again")
         return None
     return Evaluations(margins, words)
 

@@ -196,7 +196,7 @@ def _step_tested(test: StepTest, sets: list[str], bench: SuiteConfig, out: Path,
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
         raise BadInput(
-            "open-loop tests do not support --set; set it in the file and no --requirements: write them in it",
+            "open-loop tests do not support --set and --requirements: write both in the file",
             file=test.file,
         )
     scenario = Scenario(name=_nameable(test.name), title=test.title or f"step test of {test.model}")

@@ -108,12 +108,11 @@ def shares_of(table: Table) -> list[str]:
     for name, chosen in {**groups, "without unavoidable contact": ~unavoidable}.items():
         of = valid & chosen
         count, total = int(parked[of].sum()), int(of.sum())
-        interval = percent_interval(count, total) if total else "-"
-        share = 100.0 * count / max(total, 1)
-        lines.append(
-            f"parked of valid, {name}: {count} of {total}, {share:.2f} % (95 %: {interval}); "
-            f"of all runs {full} of {len(ends)}"
-        )
+        if total:
+            lines.append(
+                f"parked of valid, {name}: {count} of {total}, {100.0 * count / total:.2f} % "
+                f"(95 %: {percent_interval(count, total)}); of all runs {full} of {len(ends)}"
+            )
     touched = {end: ends == end for end in (MOVING, STANDING, DRIVER)}
     counts = (f"{end} {int(rows.sum())} ({int((rows & unavoidable).sum())})" for end, rows in touched.items())
     lines.append(f"contacts of {len(ends)} runs (also if the car had stood for 1 s): " + ", ".join(counts))

@@ -6,14 +6,17 @@ import shlex
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from orchestrator.cli import main
 from orchestrator.evaluation.verdict.logged_scenario import read_logged_scenario
+from orchestrator.inputs.scenario.models import MODELS
 from orchestrator.presentation.log.read_log import read_log
 from orchestrator.session.provenance import git_commit
-from orchestrator.simulation.cosim.fmu_files import sources_hash
+from orchestrator.simulation.cosim import fmu_files
+from orchestrator.simulation.cosim.fmu_files import can_compile, sources_hash
 from orchestrator.studies.live.layout import layout_data
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
@@ -152,3 +155,22 @@ def test_a_page_of_runs_shows_pictures_and_escapes_titles(tmp_path: Path) -> Non
     assert 'alt="demo: not parked"' in page
     assert "not_parked</b>" not in page
     assert "<script>x" not in page
+
+
+@pytest.mark.skipif(not can_compile(), reason="no C compiler")
+def test_an_fmu_beside_another_is_built_once_for_all_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And again if it is damaged."""
+    place = tmp_path / "native" / "Controller.fmu"
+    made = fmu_files.fmu_beside(place, MODELS["vehicle"])
+    whole = made.read_bytes()
+
+    def refuse(*_: Any, **__: Any) -> Any:
+        raise AssertionError("built again")
+
+    with monkeypatch.context() as other:
+        other.setattr(fmu_files, "_BESIDE", {})
+        other.setattr(fmu_files, "build_into", refuse)
+        assert fmu_files.fmu_beside(place, MODELS["vehicle"]) == made
+    made.write_bytes(whole[:1000] + b"?" + whole[1001:])
+    monkeypatch.setattr(fmu_files, "_BESIDE", {})
+    assert fmu_files.fmu_beside(place, MODELS["vehicle"]).read_bytes() == whole

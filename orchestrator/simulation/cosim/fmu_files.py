@@ -32,7 +32,7 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     from fmus.cache_paths import DIST
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
-    before = _stamp(DIST / kind)
+    before = _read_stamp(DIST / kind / STAMP)
     if before != stamp_of(files.values()):
         if before.startswith(sources_hash()):
             _remove_damaged(before, files.values())
@@ -47,15 +47,23 @@ _BESIDE: dict[tuple[Path, str], tuple[Model, Path, int]] = {}
 def fmu_beside(path: Path, model: Model) -> Path:
     """Return the up-to-date FMU of ``model`` beside another of the same kind, built if it is not there.
 
-    Sources do not change within a process: there what was built once is taken while its file is the same.
+    Sources do not change within a process: there what was built once is taken while its file is the same. Another
+    process takes it while its stamp is that of the sources and of the file.
     """
     known, file, at = _BESIDE.get((path.parent, model.name), (None, path, 0))
     if known is model and file.is_file() and file.stat().st_mtime_ns == at:
         return file
+    file, stamp = (path.with_name(f"{model.name}{suffix}") for suffix in (".fmu", f".{STAMP}"))
     with one_at_a_time(path.parent.parent / "build"):
-        (built,) = build_into(path.parent.parent, path.parent.name, models=[model])
-    _BESIDE[path.parent, model.name] = (model, built.path, built.path.stat().st_mtime_ns)
-    return built.path
+        before = _read_stamp(stamp)
+        if before != stamp_of([file]):
+            if before.startswith(sources_hash()):
+                _remove_damaged(before, [file])
+            build_into(path.parent.parent, path.parent.name, models=[model])
+            with suppress(OSError):
+                write_whole(stamp, stamp_of([file]))
+    _BESIDE[path.parent, model.name] = (model, file, file.stat().st_mtime_ns)
+    return file
 
 
 def build(kind: str, cc: str | None = None) -> list["Built"]:
@@ -134,6 +142,5 @@ def _remove_damaged(stamp: str, files: Iterable[Path]) -> None:
             path.unlink()
 
 
-def _stamp(folder: Path) -> str:
-    stamp = folder / STAMP
+def _read_stamp(stamp: Path) -> str:
     return stamp.read_text(encoding="ascii", errors="replace") if stamp.is_file() else ""

@@ -8,12 +8,14 @@ import pytest
 import yaml
 
 from orchestrator.cli import main
+from orchestrator.evaluation.verdict.summary import summarize
 from orchestrator.inputs.scenario.files import LIBRARY
 from orchestrator.inputs.scenario.load_scenario import load_scenario
+from orchestrator.inputs.scenario.requirements import Requirement
 from orchestrator.inputs.scenario.scenario import Scenario
 from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
 from orchestrator.session.foreign import ImportedFmus, load_bound_scenario
-from orchestrator.session.session import Messages, make_instances
+from orchestrator.session.session import Messages, make_instances, run_scenario
 from orchestrator.simulation.cosim.algorithm import Interrupt
 from orchestrator.simulation.cosim.fmu_files import can_compile, fmu_beside, fmu_files
 from orchestrator.testing.catalogue.entries import (
@@ -150,6 +152,23 @@ def test_what_a_step_test_cannot_ask_of_an_fmu_is_not_tested() -> None:
     note(asked[1:2], suite.SuiteResult(test, None, None, [Case("a", False, "late")], []))
     note(asked[2:], suite.SuiteResult(test, None, None, [Case("a", True, "in time")], []))
     assert [item.word for item in asked] == ["not tested", "missed", "met"]
+
+
+def test_a_state_that_a_controller_has_not_is_not_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The other limits of the entry, and contact, are judged."""
+    scenario = load_scenario("guo2015-case4", ["stop_time=0.1"])
+    ran = run_scenario(scenario)
+    summary = summarize(ran.recording, scenario, 0.0)
+    limits = [
+        Requirement(id="taken over", signal="controller.phase", equals="NOWHERE", source="S"),
+        Requirement(id="slow", signal="vehicle.speed", max_abs=3.0, source="S"),
+    ]
+    monkeypatch.setattr(Clause, "limits_to_keep", lambda self: limits)
+    asked = [ClauseVerdict(EVERYTHING[0].standard, entry(scenarios=[scenario.name], outcome=["not_parked"]), [])]
+    note(asked, suite.SuiteResult(scenario, summary, ran.recording, [], []))
+    assert asked[0].word == "not tested", asked[0].why
+    assert "'NOWHERE' is no state" in asked[0].why
+    assert [check.id for check in asked[0].tried[0].checks] == ["slow", scenario.contact_rule.id]
 
 
 def test_words_of_the_command() -> None:

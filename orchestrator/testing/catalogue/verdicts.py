@@ -7,7 +7,7 @@ from orchestrator.evaluation.verdict.judge import Check, judge
 from orchestrator.evaluation.verdict.limit_text import sentence
 from orchestrator.evaluation.verdict.numbers import facts_of
 from orchestrator.inputs.scenario.scenario import Scenario
-from orchestrator.inputs.text.errors import BAD_INPUT
+from orchestrator.inputs.text.errors import BAD_INPUT, BadInput
 from orchestrator.simulation.cosim.recording import Recording
 from orchestrator.testing.catalogue.entries import Clause, Standard
 from orchestrator.testing.suite.junit import Case, Suite
@@ -111,12 +111,17 @@ def _run_of_step_test(name: str, tested: SuiteResult) -> ClauseRun:
 
 
 def _run_of_scenario(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
-    requirements = [*entry.limits_to_keep(), scenario.contact_rule]
-    checks = judge(requirements, recording, facts_of(recording, scenario), scenario.file)
+    facts, checks, unmeasured = facts_of(recording, scenario), list[Check](), list[str]()
+    for limit in [*entry.limits_to_keep(), scenario.contact_rule]:
+        try:
+            checks += judge([limit], recording, facts, scenario.file)
+        except BadInput as error:  # of an FMU whose mode has other states, or a signal another unit
+            unmeasured.append(str(error))
+    unmeasured += [check.id for check in checks if not check.evaluated]
     missed = [f"{check.id}: {sentence(check)}" for check in checks if check.evaluated and not check.passed]
     if entry.outcome and outcome not in entry.outcome:
         missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), required {' or '.join(entry.outcome)}")
-    return ClauseRun(scenario.name, outcome, missed, [check.id for check in checks if not check.evaluated], checks)
+    return ClauseRun(scenario.name, outcome, missed, unmeasured, checks)
 
 
 def counts(verdicts: list[ClauseVerdict]) -> dict[Word, int]:

@@ -61,6 +61,9 @@ def correct_slot(
     for landmark in landmarks:
         if slot.type != SlotType.PARALLEL and is_confirmed(landmark, params):
             corrected = _beside_flank(corrected, slot, landmark, outline, least)
+    # the line of an angled row's fronts comes nearer to the road, or goes from it, as the middle moves along the row
+    rise = slot.row.side * slot.row.slope * (middle_of(corrected) - middle_of(slot))
+    corrected = corrected._replace(front=slot.front + rise)
     half = outline.half_length if slot.type == SlotType.PARALLEL else outline.half_width
     depth = gap_depth(corrected, slot_middle(corrected), half, landmarks, params)
     return corrected._replace(depth=min(slot.depth, depth))

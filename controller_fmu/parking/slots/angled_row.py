@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_to_frame
 from controller_fmu.parking.geometry.line_fit import PointSums, about_mean, add_point
+from controller_fmu.parking.map.chain_update import KNOWN_SIGMA
 from controller_fmu.parking.map.free_space import Ray, is_free, path_curvature
 from controller_fmu.parking.map.landmark import Landmark, LandmarkType, end_point, length_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
@@ -72,6 +73,7 @@ class RoadCorner(NamedTuple):
     gate: float = 0.0
     length: float = 0.0
     """Of the side [m]; 0 of a point."""
+    length_variance: float = 0.0
     is_complete: bool = False
     """The side's other end has been observed, too."""
     sigma: float = 0.0
@@ -133,12 +135,16 @@ def _square_angle(angle: float) -> float:
 def _corners(
     landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams
 ) -> tuple[RoadCorner, ...]:
-    """Return the corners at the road of sides and points beside the vehicle, in its frame."""
+    """Return the corners at the road of sides and points beside the vehicle, in its frame.
+
+    A point that is known less well than the known end of a side is a part of a side.
+    """
     corners: tuple[RoadCorner, ...] = (RoadCorner(),) * MAX_CORNERS
     for landmark in landmarks:
         length = length_of(landmark)
         is_side = landmark.type == LandmarkType.SEGMENT and MIN_SIDE <= length < MAX_CAR
-        if is_confirmed(landmark, params) and (is_side or landmark.type == LandmarkType.POINT):
+        is_point = landmark.type == LandmarkType.POINT and landmark.xx + landmark.yy < KNOWN_SIGMA * KNOWN_SIGMA
+        if is_confirmed(landmark, params) and (is_side or is_point):
             a = start_point(landmark)
             b = end_point(landmark)
             p = point_to_frame(a.x, a.y, vehicle)
@@ -149,9 +155,10 @@ def _corners(
             heading = landmark.heading - vehicle.heading
             gate = params.gate * (landmark.hh + ASKEW_VARIANCE)
             is_complete = landmark.start_known and landmark.end_known
+            length_variance = landmark.start_variance + landmark.end_variance
             sigma = math.sqrt(landmark.xx + landmark.yy)
             weight = max(length, POST_WEIGHT) if is_known else POST_WEIGHT
-            corner = RoadCorner(end.x, side * end.y, heading, gate, length, is_complete, sigma, weight)
+            corner = RoadCorner(end.x, side * end.y, heading, gate, length, length_variance, is_complete, sigma, weight)
             if corner.deep > 0.0:
                 corners = corners[1:] + (corner,)
     return corners
@@ -354,16 +361,18 @@ def _is_whole(corner: RoadCorner) -> bool:
 def _car_of(sides: CarSides, first: float, lean: float, side: float) -> RowMember:
     """Return the car whose foremost corner is at ``first``, by its sides.
 
-    What stands beside it narrows the gap there. The far end of a front that is not seen in full is a car's width off.
+    What stands beside it narrows the gap there. The far end of a front is as far off as was observed and as
+    cars are wide, by the variances of both.
     """
     longer = sides.flank if sides.flank.length > sides.front.length else sides.front
     beside = first if lean > 0.0 else sides.last
     is_flank_known = sides.flank.weight > 0.0 and lean * (beside - sides.flank.along) <= POST_GAP
     edge = sides.flank.along if is_flank_known else beside
     deep = sides.front.deep if sides.front.weight > 0.0 else sides.flank.deep
-    is_whole = _is_whole(sides.front)
-    width = sides.front.length if is_whole else CAR_WIDTH
-    width_sigma = sides.front.sigma if is_whole else CAR_WIDTH_SIGMA
+    usual = CAR_WIDTH_SIGMA * CAR_WIDTH_SIGMA
+    share = usual / (usual + sides.front.length_variance) if _is_whole(sides.front) else 0.0
+    width = CAR_WIDTH + share * (sides.front.length - CAR_WIDTH)
+    width_sigma = CAR_WIDTH_SIGMA * math.sqrt(1.0 - share)
     turned = side * math.tan(longer.tilt) * width
     if lean > 0.0:
         return RowMember(edge - width, edge, deep, True, True, deep - turned, deep, width_sigma, longer.sigma)

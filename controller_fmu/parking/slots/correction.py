@@ -66,7 +66,7 @@ def correct_slot(
     corrected = corrected._replace(front=slot.front + rise)
     half = outline.half_length if slot.type == SlotType.PARALLEL else outline.half_width
     depth = gap_depth(corrected, slot_middle(corrected), half, landmarks, params)
-    return corrected._replace(depth=min(slot.depth, depth))
+    return corrected._replace(depth=min(slot.depth - rise, depth))
 
 
 def _beside_flank(

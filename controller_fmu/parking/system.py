@@ -42,6 +42,7 @@ from controller_fmu.parking.monitor.fault_monitor import (
     input_fault,
     is_taken_over,
 )
+from controller_fmu.parking.objects.track import is_lost_at_once
 from controller_fmu.parking.params import ParkingParams, is_driver_driving
 from controller_fmu.parking.path_planning import (
     begin_plan,
@@ -129,7 +130,8 @@ def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingPar
     if reason == Reason.NONE:
         manoeuvres = memory.progress.manoeuvres - spare
         reason = fault_reason(clocks, inputs, phase, manoeuvres, params.monitor.over_speed_time, params)
-    if reason == Reason.NONE and has_blind_side(memory.perception.local_map.missed):
+    is_silent = has_blind_side(memory.perception.local_map.missed) or is_lost_at_once(memory.perception.tracks)
+    if reason == Reason.NONE and is_silent:
         reason = Reason.SENSOR_LOSS
     return memory._replace(clocks=clocks, reason=reason)
 

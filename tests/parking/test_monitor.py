@@ -30,8 +30,10 @@ from controller_fmu.parking.monitor.collision_monitor import (
 )
 from controller_fmu.parking.monitor.params import MonitorParams
 from controller_fmu.parking.objects.track import (
+    MAX_COASTING,
     ObjectTrack,
     closing_speed,
+    is_lost_at_once,
     is_yielded_to,
     range_in_blind_zone,
     static_approach,
@@ -315,6 +317,17 @@ def test_no_static_corner_counts_as_moving(speed: float, curvature: float, later
         sensor = sensor_pose(FLANK, math.radians(30.0), pose)
         readings.append(min(predict_range_to_point(sensor, x, 0.9 + lateral).distance, 5.0))
     assert not any(map(is_yielded_to, tracked(readings, poses, FLANK)))
+
+
+def test_many_echoes_lost_in_one_cycle_show_silent_sensors() -> None:
+    lost = ObjectTrack(1.0, confirmations=9)
+    for _ in range(MAX_COASTING):
+        lost = update_track(lost, False, 5.0, 0.0, 1e-4, 0.04)
+    seen = update_track(ObjectTrack(1.0, rr=1e-4, confirmations=9), True, 1.0, 0.0, 1e-4, 0.04)
+    before = update_track(lost, False, 5.0, 0.0, 1e-4, 0.04)
+    assert is_lost_at_once((lost,) * 4 + (seen,) * 8)
+    assert not is_lost_at_once((lost,) * 3 + (seen,) * 9)
+    assert not is_lost_at_once((lost,) * 3 + (before,) * 9), "they were lost before"
 
 
 def test_a_track_coasts_and_ends() -> None:

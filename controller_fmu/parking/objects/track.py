@@ -21,6 +21,8 @@ MIN_CONFIRMATIONS = 2
 """Echoes after which a track is confirmed: one alone may be noise."""
 MAX_COASTING = 4
 """Measurement cycles: 0.16 s."""
+MIN_LOST_AT_ONCE = 4
+"""Sensors that fall silent lose their echoes in one cycle; two objects, each in two views, hardly ever leave so."""
 MIN_APPROACH = 0.25
 """Approach [m] that no motion of the vehicle explains and that shows a moving object: 8 sigma of 3 cm of noise."""
 TIME_TO_STAND = 1.5
@@ -108,6 +110,11 @@ def static_approach(before: SensorPose, after: SensorPose) -> float:
 def is_yielded_to(track: ObjectTrack) -> bool:
     """Return whether the vehicle has to stand for a moving object: one close by, or one that arrives soon."""
     return track.approach > MIN_APPROACH and (track.range < NEARBY_RANGE or track.range < -track.rate * TIME_TO_STAND)
+
+
+def is_lost_at_once(tracks: tuple[ObjectTrack, ...]) -> bool:
+    """Return whether sensors have fallen silent: many have missed their echoes since the same cycle."""
+    return sum(1 if track.missed == MAX_COASTING else 0 for track in tracks) >= MIN_LOST_AT_ONCE
 
 
 def range_in_blind_zone(track: ObjectTrack, own_approach: float, min_range: float) -> float:

@@ -4,9 +4,9 @@
 
 A line of the table: file, constant, value, scale, rows, rows of which any number differs, rows with another outcome,
 change in parked rows, rows lost. ``--resume`` continues a table; ``--same-in FILE.tsv`` takes only constants of which
-no line there differs. ``sensitivity.tsv`` has the first constants of the parking system: ``--runs 20 --seed 6``.
-Parameters are set for the study; most real numbers are changed in the compiled model while it is loaded (see
-``benchmarks.tuning_constants``); for the others the packages are copied and compiled once for each line.
+no line there differs. ``sensitivity.tsv`` has real constants and parameters of the parking system: ``--runs 20
+--seed 6``. Parameters are set for the study; most real numbers are changed in the compiled model while it is loaded
+(see ``benchmarks.tuning_constants``); for the others the packages are copied and compiled once for each line.
 """
 
 import argparse

@@ -74,6 +74,7 @@ class RoadCorner(NamedTuple):
     length: float = 0.0
     """Of the side [m]; 0 of a point."""
     length_variance: float = 0.0
+    """Variance of that [m2]."""
     is_complete: bool = False
     """The side's other end has been observed, too."""
     sigma: float = 0.0
